@@ -57,7 +57,7 @@ def check_writable(target: Path) -> None:
         raise InputError(msg, where=str(target), hint="give another place") from None
 
 
-def check_file(target: Path, *, force: bool = False, force_by: str = "--force") -> None:
+def check_file(target: Path, *, force: bool = False) -> None:
     """Raise where a file cannot be written to ``target``, or where a file of others exists.
 
     Raises
@@ -75,7 +75,7 @@ def check_file(target: Path, *, force: bool = False, force_by: str = "--force") 
             raise InputError(msg, where=where, hint="give another name")
         if not (force or is_own(target) or _is_picture(target)):
             msg = "there is a file of that name already"
-            raise InputError(msg, where=where, hint=f"give another name, or {force_by} to replace it")
+            raise InputError(msg, where=where, hint="give another name, or --force to replace it")
     check_writable(target.parent)
 
 

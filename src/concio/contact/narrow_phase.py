@@ -87,11 +87,6 @@ class Contacts:
         return np.repeat(np.arange(len(self)), np.diff(self.first))
 
     @property
-    def least_gap(self) -> Array:
-        """Smallest gap of each patch (p,) [m]."""
-        return np.asarray(np.minimum.reduceat(self.gap, self.first[:-1])) if len(self) else np.zeros(0)
-
-    @property
     def kinds(self) -> tuple[str, ...]:
         """What meets what, of each patch: "face-face", "edge-face" and so on, the feature of a first."""
         words = FEATURES[self.normal.shape[1]]

@@ -63,7 +63,7 @@ class JointRule:
         return (fits(p, a) and fits(q, b)) or (fits(p, b) and fits(q, a))
 
 
-def check_rules(rules: Sequence[JointRule], bodies: Sequence[Body | Polyhedron], where: str = "") -> None:
+def check_rules(rules: Sequence[JointRule], bodies: Sequence[Body | Polyhedron]) -> None:
     """Refuse rules that name what no body is called: they would be void.
 
     Raises
@@ -78,7 +78,7 @@ def check_rules(rules: Sequence[JointRule], bodies: Sequence[Body | Polyhedron],
                 msg = f"the rule for the joint law '{rule.law}' names '{word}', but no body has that name, role, layer "
                 msg += "or material"
                 hint = closest(word, known, otherwise="see the names with 'concio check --all'" * (len(known) > 30))
-                raise InputError(msg, where=where or None, hint=hint)
+                raise InputError(msg, hint=hint)
 
 
 def rules_of(rules: Sequence[JointRule], bodies: Sequence[Body | Polyhedron]) -> tuple[JointRule, ...]:

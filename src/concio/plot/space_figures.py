@@ -19,9 +19,9 @@ from concio.plot import style
 from concio.plot.picture import Picture
 from concio.plot.space_loads import draw_loads
 from concio.post.joint_faces import joint_faces
+from concio.post.mechanism_states import mechanism_states
 from concio.post.outlines import display_scale
 from concio.post.solids import Solids, model_solids, moved_ties, solids
-from concio.post.space_states import mechanism_states_in_space
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -124,7 +124,7 @@ def plot_space(
     largest = float(np.linalg.norm(shown.displacement, axis=1).max(initial=0.0))
     chosen = (2.0 if mechanism else 1.0) * display_scale(largest, shown.size) if scale is None else scale
     faces = joint_faces(result, u)
-    state = mechanism_states_in_space(result, faces) if mechanism else result.contacts.state[faces.pair]
+    state = mechanism_states(result, faces) if mechanism else result.contacts.state[faces.pair]
     looks = {0: style.OPEN.colour, 2: style.SLIP.colour, 3: style.CRUSHED.colour}
     pointed = result.assembly.pairs.interface[faces.pair] >= len(result.assembly.detection.patches)
     extra = []

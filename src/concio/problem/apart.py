@@ -149,15 +149,6 @@ def _info(found: Sequence[Solution], decisive: int) -> dict[str, Any]:
     return info
 
 
-def of_parts(solver: Callable[..., Solution]) -> Callable[..., Solution]:
-    """Return a solver of problems that solves their parts one by one."""
-
-    def apart(problem: ContactProblem, **options: Any) -> Solution:
-        return solve_apart(problem, lambda part: solver(part.problem, **options))
-
-    return apart
-
-
 def own(part: Part, *arrays: Array) -> tuple[Array, ...]:
     """Return what belongs to a part of arrays u (N,), t_n (m,), t_t (m, d-1) of the whole."""
     u, t_n, t_t = arrays

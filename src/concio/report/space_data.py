@@ -13,9 +13,9 @@ import numpy as np
 
 from concio.post.body_motion import body_motions
 from concio.post.joint_faces import JointFaces, joint_faces
+from concio.post.mechanism_states import mechanism_states
 from concio.post.outlines import display_scale
 from concio.post.solids import Solids, solids, tie_bodies, tie_ends
-from concio.post.space_states import mechanism_states_in_space
 from concio.report.view_data import LOOK, kind_of, pack, steps_within, units_of
 
 if TYPE_CHECKING:
@@ -118,7 +118,7 @@ def _step(result: Result, label: str) -> dict[str, Any]:
     }
     if not result.solved:
         if velocity is not None:
-            step["state"] = pack(mechanism_states_in_space(result, faces), "u1")
+            step["state"] = pack(mechanism_states(result, faces), "u1")
         return step
     contacts, joints = result.contacts, result.joints_in_space
     values, directions = result.stress.principal_in_space

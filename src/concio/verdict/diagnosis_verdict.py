@@ -46,16 +46,6 @@ def diagnosis_verdict(found: Diagnosis, language: str = "en", *, write: Write = 
     return _Words(found, language, write).verdict()
 
 
-def cause_words(found: Diagnosis, cause: Cause, language: str = "en", *, write: Write = number) -> str:
-    """Return a cause in words, each motion with its interval."""
-    return _Words(found, language, write).cause(cause)
-
-
-def doubt_words(found: Diagnosis, doubt: Doubt, language: str = "en", *, write: Write = number) -> str:
-    """Return what is suspicious about a measurement, in a sentence."""
-    return _Words(found, language, write).doubt(doubt)
-
-
 class _Words:
     """Puts one diagnosis into words."""
 

@@ -12,8 +12,8 @@ from concio.plot.forces import plot_pressure
 from concio.plot.space_figures import plot_space
 from concio.post.joint_faces import joint_faces
 from concio.post.joint_lines import MARK, _displacement, joint_lines
+from concio.post.mechanism_states import mechanism_states
 from concio.post.outlines import outlines
-from concio.post.space_states import mechanism_states_in_space
 from concio.problem.pair_state import PairState
 from concio.problem.solution import Status
 from concio.report.space_data import space_view_data
@@ -63,7 +63,7 @@ def test_states_of_a_mechanism_do_not_depend_on_its_speed(speed, lost):
     faces = SimpleNamespace(moved_a=0.0 * moved_b, moved_b=moved_b, pair=np.arange(8)[::-1])
     laws = SimpleNamespace(friction=np.full(8, 0.5), dilatancy=np.full(8, 0.3))
     assembly = SimpleNamespace(pairs=SimpleNamespace(normal=np.tile(z, (8, 1))), laws=laws)
-    found = mechanism_states_in_space(SimpleNamespace(assembly=assembly, status=lost), faces)
+    found = mechanism_states(SimpleNamespace(assembly=assembly, status=lost), faces)
     between = PairState.OPEN if lost is Status.COLLAPSES else PairState.SLIP
     assert found.tolist() == [
         PairState.STICK, PairState.SLIP, between, PairState.OPEN, PairState.STICK, PairState.OPEN, PairState.STICK,

@@ -15,8 +15,8 @@ from concio.plot.picture import Picture
 from concio.plot.space_figures import VIEWS, directions, plot_space_model
 from concio.post.body_motion import body_motions
 from concio.post.joint_faces import joint_faces, pieces_of
+from concio.post.mechanism_states import mechanism_states
 from concio.post.solids import model_solids, moved_ties, solids
-from concio.post.space_states import mechanism_states_in_space
 from concio.problem.solution import Mechanism, Status, failed
 from concio.report.page import report_html
 from concio.report.space_data import space_view_data
@@ -101,7 +101,7 @@ def test_joints_of_a_mechanism_open_where_they_open() -> None:
     centre = concio.assemble(model).disc.centroids[2]
     result = moving(model, {"top": (tuple(np.cross(turn, centre - [0.0, 0.0, 0.5])), tuple(turn))})
     faces = joint_faces(result, result.mechanism_velocity)
-    state = mechanism_states_in_space(result, faces)
+    state = mechanism_states(result, faces)
     top = result.assembly.pairs.body_b[faces.pair] == 2
     opened = np.linalg.norm((faces.moved_b - faces.moved_a).mean(axis=1), axis=1)
     assert opened[top] == pytest.approx(faces.corners.mean(axis=1)[top, 0], abs=1e-9)
@@ -113,7 +113,7 @@ def test_sliding_joints_are_told_from_opening_ones() -> None:
     for rise, wanted in ((0.59, 2), (0.61, 0)):  # friction 0.6
         result = moving(tower(0.6), {"top": ((0.6, 0.8, rise), (0, 0, 0))})
         faces = joint_faces(result, result.mechanism_velocity)
-        state = mechanism_states_in_space(result, faces)
+        state = mechanism_states(result, faces)
         assert set(state[result.assembly.pairs.body_b[faces.pair] == 2]) == {wanted}
 
 

@@ -101,7 +101,7 @@ def mexe(
     return Mexe(axle, provisional, profile, flat * factors, tuple(told))
 
 
-def mexe_of(model: Model, *, span_rise: float | None = None, factors: float = 1.0) -> Mexe | None:
+def mexe_of(model: Model, *, span_rise: float | None = None) -> Mexe | None:
     """Return the formula's answer for a bridge of one span that was made by its span and ring; None for others."""
     given = model.generator.get("arguments")
     if model.generator.get("kind") != "bridge" or not isinstance(given, dict) or len(given["span"]) != 1:
@@ -115,7 +115,7 @@ def mexe_of(model: Model, *, span_rise: float | None = None, factors: float = 1.
     foot, middle = float(points[:, 1].min()), float(points[:, 0].min() + points[:, 0].max()) / 2
     rise = float(points[:, 1].max()) - ring - foot
     quarter = _underside(free, middle - 0.25 * span) - foot
-    found = mexe(span, rise, quarter, ring, depth, span_rise=span_rise, factors=factors)
+    found = mexe(span, rise, quarter, ring, depth, span_rise=span_rise)
     if len(given["ring"]) > 1:
         return Mexe(found.axle, found.provisional, found.profile, found.factors,
                     (*found.limits, f"{len(given['ring'])} rings are taken as one"))  # fmt: skip

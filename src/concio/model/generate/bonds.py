@@ -130,8 +130,8 @@ def head_joints(course: Course, length: float) -> Array:
     return without_short_pieces(np.array([*lines, length]))
 
 
-def without_short_pieces(lines: Array, shortest: float = SHORTEST, longest: float = 1.0) -> Array:
-    """Return the lines (k,) with pieces shorter than ``shortest`` joined to a neighbour, the ends kept.
+def without_short_pieces(lines: Array, longest: float = 1.0) -> Array:
+    """Return the lines (k,) with pieces shorter than :data:`SHORTEST` joined to a neighbour, the ends kept.
 
     Where the two together are longer than ``longest`` the line between them moves to their middle.
     """
@@ -141,13 +141,13 @@ def without_short_pieces(lines: Array, shortest: float = SHORTEST, longest: floa
     while len(lines) > 2:
         pieces = np.diff(lines)
         k = int(np.argmin(pieces))
-        if pieces[k] >= shortest - tiny:
+        if pieces[k] >= SHORTEST - tiny:
             break
         # the inner line to remove: towards the shorter neighbour
         before = pieces[k - 1] if k else np.inf
         after = pieces[k + 1] if k + 1 < len(pieces) else np.inf
         line = k if before <= after else k + 1
-        if min(before, after) + pieces[k] > longest + tiny and min(before, after) >= 2 * shortest:
+        if min(before, after) + pieces[k] > longest + tiny and min(before, after) >= 2 * SHORTEST:
             lines[line] = 0.5 * (lines[line - 1] + lines[line + 1])
         else:
             lines = np.delete(lines, line)

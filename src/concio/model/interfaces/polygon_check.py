@@ -40,7 +40,7 @@ class Fault:
     hint: str
 
 
-def check_polygon(outline: Array, name: str = "", *, tolerance: float = 0.0, sharpest: float = SHARPEST) -> None:
+def check_polygon(outline: Array, name: str = "") -> None:
     """Raise for the first fault of an outline.
 
     Parameters
@@ -49,17 +49,13 @@ def check_polygon(outline: Array, name: str = "", *, tolerance: float = 0.0, sha
         Vertices [m].
     name : str
         Name of the block, for the message.
-    tolerance : float
-        Vertices closer than this coincide [m]; 0 finds only equal ones.
-    sharpest : float
-        Angles below this are spikes [rad].
 
     Raises
     ------
     GeometryError
         With what was found, the block and the coordinates, what to do, and how many more faults there are.
     """
-    faults = polygon_faults(outline, tolerance=tolerance, sharpest=sharpest)
+    faults = polygon_faults(outline)
     if faults:
         first = faults[0]
         more = f"; {len(faults) - 1} more fault{'s' if len(faults) > 2 else ''} in this outline" if faults[1:] else ""

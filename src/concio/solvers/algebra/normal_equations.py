@@ -15,6 +15,9 @@ import scipy.sparse.linalg as sla
 from concio.problem.contact_problem import Array
 from concio.solvers.algebra.sparse_factor import nested_dissection
 
+GROUP = 3
+"""Rows that stay together in the order: the rigid motions of a block in the plane."""
+
 REPEATS = 4
 """Largest number of times a point is rebalanced."""
 
@@ -25,13 +28,11 @@ class NormalEquations:
     Parameters
     ----------
     A : (M, n) sparse array
-    group : int
-        Consecutive rows that belong together: the rigid motions of a block.
     """
 
-    def __init__(self, A: sp.csc_array, group: int = 3) -> None:
+    def __init__(self, A: sp.csc_array) -> None:
         pattern = sp.csr_array(abs(A) @ abs(A).T)
-        self.order, self.ordering = nested_dissection(pattern, group)
+        self.order, self.ordering = nested_dissection(pattern, GROUP)
         self.A = sp.csr_array(sp.csr_array(A)[self.order])
         self.At = sp.csr_array(self.A.T)
         self.matrix, self.weights, self.diagonal = _products(sp.csc_array(self.A))

@@ -276,25 +276,17 @@ class Scaled:
         return float(np.abs(self.bonded - self.start).max(initial=0.0)) / largest if largest else 0.0
 
 
-def scale(problem: ContactProblem, *, loads: Array | None = None) -> Scaled:
-    """Bring a problem to units of its own.
-
-    Parameters
-    ----------
-    problem : ContactProblem
-    loads : (N,) array, optional
-        Loads by which forces are measured where those of the problem are not the measure (a load path) [kN].
-    """
+def scale(problem: ContactProblem) -> Scaled:
+    """Bring a problem to units of its own."""
     m, d = problem.pairs, problem.dim
     stiffness, K, C, factor = _matrices(problem, problem.engine)
     springs = 1.0 / (softness(problem) + compliances(problem) * stiffness)
     factor.factorise(springs[:, :, None] * np.eye(d), LOOSE)
-    measured = problem.f if loads is None else loads
     gaps = np.column_stack([problem.gap, -problem.slip_origin])
-    if measured.any():  # gaps stay open, and slips of the past are those of motions: they are no measure of the loads
+    if problem.f.any():  # gaps stay open, and slips of the past are those of motions: they are no measure of the loads
         gaps = np.column_stack([np.minimum(problem.gap, 0.0), np.zeros((m, d - 1))])
     held = springs * gaps
-    u = factor.solve(measured / stiffness - C.T @ held.ravel())
+    u = factor.solve(problem.f / stiffness - C.T @ held.ravel())
     t = springs * (C @ u).reshape(m, d) + held
     size = float(np.sqrt(np.mean(t**2))) if m else 0.0
     length = size if np.isfinite(size) and size > 0 else 1.0

@@ -139,13 +139,11 @@ class InteriorPoint:
     Parameters
     ----------
     scaled : Scaled
-    correctors : int, optional
-        Largest number of centrality correctors of an iteration; default :data:`CORRECTORS`.
     """
 
-    def __init__(self, scaled: Scaled, correctors: int | None = None) -> None:
+    def __init__(self, scaled: Scaled) -> None:
         self.problem = scaled
-        self.correctors = CORRECTORS[scaled.dim] if correctors is None else correctors
+        self.correctors = CORRECTORS[scaled.dim]
         rough, capped = scaled.rough, scaled.cone.capped
         self.count = max(scaled.pairs + 2 * int(rough.sum()) + int(capped.sum()), 1)
 
@@ -163,24 +161,24 @@ class InteriorPoint:
         one = np.full(s.pairs, length)
         return Point(np.zeros(len(s.f)), t, one, eta, one.copy())
 
-    def near(self, u: Array, t: Array, size: float = NEAR) -> Point:
+    def near(self, u: Array, t: Array) -> Point:
         """Return a point inside the cones around displacements (N,) and forces (m, d) that obey the joint laws nearly.
 
-        Normal forces, gaps and slip bounds are larger by ``size``; friction is no larger than its strength was.
+        Normal forces, gaps and slip bounds are larger by :data:`NEAR`; friction is no larger than its strength was.
         """
         s = self.problem
         y, t_n, slip = s.position(u, t), np.clip(t[:, 0], 0.0, s.cone.cap), np.linalg.norm(t[:, 1:], axis=1)
         strength = s.cone.linear_strength(t_n)
         kept = np.minimum(1.0, strength / np.where(slip > 0, slip, 1.0))
-        t_n = np.where(s.cone.capped, np.minimum(t_n + size, 0.5 * (t_n + s.cone.cap)), t_n + size)
+        t_n = np.where(s.cone.capped, np.minimum(t_n + NEAR, 0.5 * (t_n + s.cone.cap)), t_n + NEAR)
         eta = y.copy()
-        eta[:, 0] = np.linalg.norm(y[:, 1:], axis=1) + size
+        eta[:, 0] = np.linalg.norm(y[:, 1:], axis=1) + NEAR
         return Point(
             u,
             np.column_stack([t_n, kept[:, None] * t[:, 1:]]),
-            np.maximum(y[:, 0], 0.0) + size,
+            np.maximum(y[:, 0], 0.0) + NEAR,
             CONE[s.dim].coordinates(eta),
-            np.full(s.pairs, size),
+            np.full(s.pairs, NEAR),
         )
 
     def dilatancy(self, theta: float) -> Array:

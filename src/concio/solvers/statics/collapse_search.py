@@ -48,6 +48,9 @@ SETTLED = 5e-3
 that finds no forces for a motion costs twice the one that found the motion. Where that leaves no state at all, the
 motions passed over are tried from the last back to the first."""
 
+AVERAGE, SEED = 0.5, 0
+"""Weight of the new forces in the strength; of the random starts: a problem is always searched in the same way."""
+
 SAME = {2: 1e-9, 3: 1e-3}
 """States whose multipliers differ by less, relative, count as one."""
 
@@ -92,8 +95,6 @@ def find_collapse_state(
     *,
     starts: int | None = None,
     iterations: int | None = None,
-    average: float = 0.5,
-    seed: int = 0,
     work: int = COLLAPSE_WORK,
     bound: LimitLoad | None = None,
     progress: ProgressCallback | None = None,
@@ -109,10 +110,6 @@ def find_collapse_state(
         Starts at most, by default :data:`STARTS`; fewer on large problems.
     iterations : int, optional
         Linear programmes with frozen strength from one start, at most; by default 25, fewer on large problems.
-    average : float
-        Weight of the new forces in the strength.
-    seed : int
-        Of the random starts: the same problem is always searched in the same way.
     work : int
         Linear programmes times pairs after which no further start is made; one start alone takes no more either where
         this is less than its own share.
@@ -120,7 +117,7 @@ def find_collapse_state(
         Associated limit of the problem, where it is known already.
     progress : callable, optional
     """
-    asked = _Asked(starts, iterations, average, seed, work, progress)
+    asked = _Asked(starts, iterations, work, progress)
     parts = [part for part in parts_of(problem) if part.unknowns.size]
     if len(parts) <= 1:
         return _of_one(problem, live, bound, asked)
@@ -139,8 +136,6 @@ class _Asked:
 
     starts: int | None
     iterations: int | None
-    average: float
-    seed: int
     work: int
     progress: ProgressCallback | None
 
@@ -185,15 +180,14 @@ def _whole(
 def _of_one(problem: ContactProblem, live: Array, bound: LimitLoad | None, asked: _Asked) -> CollapseSearch:
     """Search the collapse states of a connected part."""
     starts, iterations, work = asked.starts, asked.iterations, asked.work
-    average, seed, progress = asked.average, asked.seed, asked.progress
     top = associated_limit(problem, live) if bound is None else bound
-    search = _Search(problem, live, average, progress)
+    search = _Search(problem, live, asked.progress)
     search.most = max(top.multiplier, top.upper)
     if np.isnan(top.multiplier):
         return search.outcome(0)
     share = WORK if work >= COLLAPSE_WORK else work
     most = max(1, min(MOST, share // max(problem.pairs, 1))) if iterations is None else iterations
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(SEED)
     made, starts = 0, STARTS[problem.dim] if starts is None else starts
     while made < starts and (made == 0 or search.programmes * problem.pairs < work):
         forces = top.normal_force if made == 0 else _drawn(problem, live, top, rng)
@@ -206,8 +200,8 @@ def _of_one(problem: ContactProblem, live: Array, bound: LimitLoad | None, asked
 class _Search:
     """Iterates from one start after another and keeps what was met; no motion is certified twice."""
 
-    def __init__(self, problem: ContactProblem, live: Array, average: float, progress: ProgressCallback | None) -> None:
-        self.problem, self.live, self.average, self.progress = problem, live, average, progress
+    def __init__(self, problem: ContactProblem, live: Array, progress: ProgressCallback | None) -> None:
+        self.problem, self.live, self.progress = problem, live, progress
         self.states: list[CollapseState] = []
         self.asked: set[bytes] = set()
         self.programmes = 0
@@ -248,7 +242,7 @@ class _Search:
             if still >= PATIENCE:
                 break
             last = found.multiplier
-            strength = (1 - self.average) * strength + self.average * problem.cone.strength(found.normal_force)
+            strength = (1 - AVERAGE) * strength + AVERAGE * problem.cone.strength(found.normal_force)
         while passed and len(self.states) == before:
             self.certify(passed.pop())
         return True

@@ -33,6 +33,9 @@ from concio.problem.solution import ProgressCallback, Solution
 from concio.solvers.algebra.scaled import Scaled, scale
 from concio.solvers.methods.iterative.iteration import GOAL, Record, Stopped, answer
 
+POWER = 30
+"""Steps of the power iteration."""
+
 
 def solve(
     problem: ContactProblem,
@@ -93,11 +96,11 @@ def solve(
     return answer(problem, record)
 
 
-def _largest(s: Scaled, solve: Callable[[Array], Array], record: Record, iterations: int = 30) -> float:
+def _largest(s: Scaled, solve: Callable[[Array], Array], record: Record) -> float:
     """Largest eigenvalue of C A^-1 C', ``solve`` being A^-1, by power iteration, enlarged by what that may miss."""
     v = np.cos(np.arange(s.x.size) * 1.7).reshape(s.x.shape)
     value = 0.0
-    for _ in range(iterations):
+    for _ in range(POWER):
         v = s.along(solve(s.pull(v)))
         record.solves()
         value = float(np.linalg.norm(v))
