@@ -1,0 +1,89 @@
+"""What a strengthening adds to a model: weight of mass, widths of buttresses, forces of ties, cohesion of joints."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from concio import Body, InputError, JointLaw, JointRule, Load, Model, Rigid, Tie
+from concio.analysis.seismic.strengthening import Measure
+from seismic_walls import courses
+
+
+def pillar(at: float = 0.0, width: float = 0.5, height: float = 3.0, thickness: float = 0.7) -> Model:
+    """Three courses on a wide ground; its left face is at x = at."""
+    ground = Body("ground", np.array([[-6, -0.5], [6, -0.5], [6, 0], [-6, 0.0]]) + (at, 0.0), kind="fixed")
+    blocks = [
+        replace(c, outline=np.asarray(c.outline) - np.asarray(c.outline).min(axis=0)
+                + (at, height / 3 * k), thickness=thickness)
+        for k, c in enumerate(courses(3, height, width))
+    ]  # fmt: skip
+    laws = {"joint": JointLaw(0.8), "weak": JointLaw(0.5, cohesion=2.0)}
+    rules = (JointRule("joint"), JointRule("weak", between=(blocks[0].name, blocks[1].name)))
+    return Model((ground, *blocks), {"block": Rigid(20.0)}, laws, rules=rules, loads=(Load("weight", (0.0, -1.0)),))
+
+
+def weights(model: Model) -> dict[str, float]:
+    return {b.name: b.volume * model.materials[b.material].unit_weight for b in model.free_bodies}
+
+
+def test_mass_adds_its_weight_by_volume_to_the_bodies_named() -> None:
+    model = pillar()
+    names = [b.name for b in model.free_bodies]
+    for of, share in (((names[2],), {names[2]: 1.0}), ((names[0], names[2]), {names[0]: 0.5, names[2]: 0.5})):
+        measure = Measure("mass", of)
+        assert measure.applied(model, 0.0) is model
+        before, after = weights(model), weights(measure.applied(model, 6.0))
+        for name in names:
+            assert after[name] - before[name] == pytest.approx(6.0 * share.get(name, 0.0))
+
+
+def test_a_tie_yields_at_the_amount_and_has_no_larger_prestress() -> None:
+    model = pillar()
+    top = model.free_bodies[-1].name
+    ties = tuple(Tie(n, top, (0.0, 2.5), "", (-4.0, 2.5), 1000.0, prestress=5.0, yield_force=9.0) for n in ("t1", "t2"))
+    model = replace(model, ties=ties)
+    for amount, prestress in ((3.0, 3.0), (7.0, 5.0), (40.0, 5.0)):
+        one, other = Measure("tie", ("t1",)).applied(model, amount).ties
+        assert (one.yield_force, one.prestress) == (amount, prestress)
+        assert other == ties[1]
+    assert [t.name for t in Measure("tie", ("t1",)).applied(model, 0.0).ties] == ["t2"]
+    with pytest.raises(InputError, match="no tie called 't3'"):
+        Measure("tie", ("t3",)).applied(model, 1.0)
+
+
+def test_grout_adds_cohesion_to_the_weakest_law_between_the_bodies_of_the_zone() -> None:
+    model = pillar()
+    low, middle, top = model.free_bodies
+    measure = Measure("grout", (low.name, middle.name))
+    made = measure.applied(model, 30.0)
+    assert measure.applied(model, 0.0) is model
+    within = made.laws[made.rule_between(low, middle).law]
+    assert (within.friction, within.cohesion) == (0.5, 32.0)
+    assert made.rule_between(middle, top).law == "joint"
+    assert made.rule_between(model.bodies[0], low).law == "joint"
+
+
+@pytest.mark.parametrize("at", [-2.0, 0.0, 3.0])
+@pytest.mark.parametrize(("side", "width", "height"), [
+    ("left", 0.4, None), ("right", 0.4, None), ("left", 1.1, 1.5), ("right", 1.1, 2.0),
+])  # fmt: skip
+def test_a_buttress_stands_beside_the_wall_with_its_width_and_height(
+    at: float, side: str, width: float, height: float | None
+) -> None:
+    model = pillar(at)
+    measure = Measure("buttress", tuple(b.name for b in model.free_bodies), side=side, height=height, unit_weight=17.0)
+    assert measure.applied(model, 0.0) is model
+    made = measure.applied(model, width)
+    block = made.bodies[-1]
+    low, high = block.vertices.min(axis=0), block.vertices.max(axis=0)
+    face = at if side == "left" else at + 0.5
+    assert (low[0], high[0]) == pytest.approx((face - width, face) if side == "left" else (face, face + width))
+    assert (low[1], high[1]) == pytest.approx((0.0, height or 3.0))
+    assert block.thickness == pytest.approx(0.7)
+    assert made.materials[block.material].unit_weight == 17.0
+    assert len(made.bodies) == len(model.bodies) + 1
+    with pytest.raises(InputError, match="has no ground under it"):
+        measure.applied(model, 20.0)
