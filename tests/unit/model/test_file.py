@@ -451,3 +451,10 @@ def test_templates_obey_the_published_schema(name: str, published: Any) -> None:
     model = concio.loads(text)
     assert model.title
     assert all(math.isfinite(body.volume) for body in model.bodies)
+
+
+@pytest.mark.parametrize("made", ["[column]\nwidth = 1\nheight = 2\nblocks = 2\n", None])
+def test_a_title_of_the_file_stands_before_that_of_a_generator(made):
+    own = "[[blocks]]\nname = 'a'\nrectangle = [[0, 0], [1, 1]]\nkind = 'fixed'\n[joints.joint]\nfriction = 0.5\n"
+    assert concio.loads(f"title = 'mine'\n{made or own}").title == "mine"
+    assert concio.loads(made or own).title == ("column of 2 blocks, 1 x 2 m" if made else "")
