@@ -14,7 +14,7 @@ from seismic_walls import courses
 
 def pillar(at: float = 0.0, width: float = 0.5, height: float = 3.0, thickness: float = 0.7) -> Model:
     """Three courses on a wide ground; its left face is at x = at."""
-    ground = Body("ground", np.array([[-6, -0.5], [6, -0.5], [6, 0], [-6, 0.0]]) + (at, 0.0), kind="fixed")
+    ground = Body("ground", np.array([[at - 6, -0.5], [at + 6, -0.5], [at + 6, 0.0], [at - 6, 0.0]]), kind="fixed")
     blocks = [
         replace(c, outline=np.asarray(c.outline) - np.asarray(c.outline).min(axis=0)
                 + (at, height / 3 * k), thickness=thickness)

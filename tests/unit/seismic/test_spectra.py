@@ -10,6 +10,7 @@ import pytest
 
 from concio.analysis.seismic.checks import Check, limit_of
 from concio.analysis.seismic.curve import CapacityCurve
+from concio.analysis.seismic.floor import FloorSpectrum, Mode, Storeys
 from concio.analysis.seismic.spectrum import Spectrum
 
 ONE = Spectrum(a_g=1.7, S=1.25, F0=2.6, T_B=0.13, T_C=0.41, T_D=2.3, T_E=5.5, T_F=9.0)
@@ -99,3 +100,52 @@ def test_a_line_holds_where_capacity_meets_demand_or_nothing_moves() -> None:
         moved = Check(kind="displacement", capacity=1.0, demand=3.0, least=least, site_a_g=0.2, **plain)
         assert (moved.at_rest, moved.holds) == (rest, rest)
         assert not Check(kind="linear", capacity=1.0, demand=3.0, least=least, site_a_g=0.2, **plain).at_rest
+
+
+RULES = {
+    "amplification": {"factor": 1.1, "power": -0.5}, "velocity_damping": 0.0004, "lower": {"share": 0.8, "power": 1.6},
+    "upper": {"share": 1.1, "power": 1.2}, "height": {"b": 1.1}, "period": {"factor": 0.05, "power": 0.75},
+}  # fmt: skip
+MODES = (Mode(0.62, 1.25, 0.2, 8.0), Mode(0.21, -0.4, 0.6, 6.0))
+
+
+def at_height(T: float, xi: float) -> float:
+    """Circolare 7/2019, C7.2.3, of two modes."""
+    eta, squares = max(math.sqrt(10.0 / (5.0 + xi)), 0.55), 0.0
+    for mode in MODES:
+        a_Z = acceleration(ONE, mode.T, mode.xi) * abs(mode.participation * mode.shape)
+        a_Z *= math.sqrt(1 + 0.0004 * mode.xi**2)
+        K, a, b = 1.1 * (mode.xi / 100) ** -0.5 * eta, 0.8, 1.1
+        if a * mode.T > T:
+            own = K * a_Z / (1 + (K - 1) * (1 - T / (a * mode.T)) ** 1.6)
+        elif b * mode.T >= T:
+            own = K * a_Z
+        else:
+            own = K * a_Z / (1 + (K - 1) * (T / (b * mode.T) - 1) ** 1.2)
+        squares += own**2
+    return math.sqrt(squares)
+
+
+@pytest.mark.parametrize("xi", [2.0, 5.0, 11.0])
+def test_floor_spectra_are_those_of_the_code_for_two_modes(xi: float) -> None:
+    floor = FloorSpectrum(ONE, MODES, RULES)
+    T = np.linspace(0.01, 6.0, 300)
+    wanted = np.array([at_height(t, xi) for t in T])
+    assert floor.filtered(T, xi) == pytest.approx(wanted, rel=1e-12)
+    ground = np.array([acceleration(ONE, t, xi) for t in T])
+    least = np.where(T > 0.62, np.maximum(wanted, ground), wanted)
+    assert (least > wanted).any(), "on the ground it is more than what the modes bring, at long periods"
+    assert floor.acceleration(T, xi) == pytest.approx(least, rel=1e-12)
+    plain = least * (T / (2 * math.pi)) ** 2
+    at = at_height(0.62, xi) * (1.1 * 0.62 / (2 * math.pi)) ** 2
+    assert floor.displacement(T, xi) == pytest.approx(np.where(T > 1.1 * 0.62, np.maximum(plain, at), plain), rel=1e-12)
+
+
+@pytest.mark.parametrize(("z", "shape"), [(-2.0, 0.0), (1.0, 0.0), (5.0, 0.5), (9.0, 1.0), (30.0, 1.0)])
+def test_the_first_mode_grows_from_the_base_to_the_top(z: float, shape: float) -> None:
+    building = Storeys(height=8.0, storeys=3, xi=4.0, base=1.0)
+    mode = building.mode(z, RULES)
+    assert (mode.participation, mode.shape, mode.xi) == pytest.approx((9.0 / 7.0, shape, 4.0))
+    assert pytest.approx(0.05 * 8.0**0.75) == mode.T
+    assert Storeys(height=8.0, T1=0.3).mode(z, RULES).T == 0.3
+    assert Storeys(height=8.0).mode(z, RULES).participation == pytest.approx(1.0)
