@@ -12,6 +12,7 @@ from concio.analysis.seismic.checks import Check, limit_of
 from concio.analysis.seismic.curve import CapacityCurve
 from concio.analysis.seismic.floor import FloorSpectrum, Mode, Storeys
 from concio.analysis.seismic.spectrum import Spectrum
+from concio.errors import InputError
 
 ONE = Spectrum(a_g=1.7, S=1.25, F0=2.6, T_B=0.13, T_C=0.41, T_D=2.3, T_E=5.5, T_F=9.0)
 OTHER = Spectrum(a_g=3.1, S=1.4, F0=2.2, T_B=0.2, T_C=0.7, T_D=1.6, T_E=4.5, T_F=10.0, damping=(10.0, 5.0, 0.55))
@@ -149,3 +150,13 @@ def test_the_first_mode_grows_from_the_base_to_the_top(z: float, shape: float) -
     assert pytest.approx(0.05 * 8.0**0.75) == mode.T
     assert Storeys(height=8.0, T1=0.3).mode(z, RULES).T == 0.3
     assert Storeys(height=8.0).mode(z, RULES).participation == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("wrong", [
+    {"height": 0.0}, {"height": -3.0}, {"height": math.inf}, {"height": 3.0, "storeys": 0},
+    {"height": 3.0, "storeys": 1.5}, {"height": 3.0, "T1": 0.0}, {"height": 3.0, "xi": -1.0},
+    {"height": 3.0, "xi": math.inf},
+])  # fmt: skip
+def test_a_building_of_no_height_or_of_part_of_a_storey_is_refused(wrong: dict[str, float]) -> None:
+    with pytest.raises(InputError):
+        Storeys(**wrong)
