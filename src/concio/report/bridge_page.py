@@ -43,8 +43,8 @@ STYLE = (
     ".film img,.film input{width:100%}#summary .facts th{width:26em}"
     "@media screen and (max-width:700px){#summary .facts th{width:50%}}"
     "#signed td{height:3.2rem}"
-    "@media print{.film input{display:none}.film img{display:none!important}"
-    ".film img.printed{display:inline-block!important;width:49%;break-inside:avoid}}"
+    "@media print{.film input,.film-slider{display:none}.film img{display:none!important}.film-text{break-after:avoid}"
+    ".film{break-before:avoid}.film img.printed{display:inline-block!important;width:49%;break-inside:avoid}}"
 )
 
 
@@ -272,8 +272,9 @@ class BridgeReport:
             f'alt="x = {self.n(own[i].position, 3)} m" src="{self._frame(own[i])}">' for k, i in enumerate(picked)
         )  # fmt: skip
         slider = f'<input type="range" min="0" max="{len(picked) - 1}" value="{begin}" aria-label="x">'
-        text = escape(self.words["film_text"])
-        return self.section("film", f'<p>{text}</p><div class="film">{slider}{frames}</div>')
+        text, moves = escape(self.words["film_text"]), escape(self.words["film_slider"])
+        told = f'<p class="film-text">{text} <span class="film-slider">{moves}</span></p>'
+        return self.section("film", f'{told}<div class="film">{slider}{frames}</div>')
 
     def signed(self) -> str:
         """Return empty fields for those who answer for the report."""
