@@ -125,7 +125,7 @@ def apart(a: Any, b: Any) -> float:
 
 def from_nothing() -> Any:
     """Let each step be solved from nothing."""
-    return mock.patch.object(Nearby, "solve", return_value=None)
+    return mock.patch.object(Nearby, "answer", return_value=None)
 
 
 def against_the_exact_path() -> None:

@@ -61,9 +61,9 @@ def search_share(duration: float) -> None:
 
         return call
 
-    update, solve = ContactSearch.update, StepSolver.solve
+    update, solve = ContactSearch.update, StepSolver.step
     setattr(ContactSearch, "update", timed("search", update))  # noqa: B010
-    setattr(StepSolver, "solve", timed("solve", solve))  # noqa: B010
+    setattr(StepSolver, "step", timed("solve", solve))  # noqa: B010
     wall = concio.running_bond_panel(**{**WALL, "courses": 25, "blocks": 39}, block=RIGID)
     options = {"motion": concio.Pulse("sine", 1.0 * 9.81, 0.3, cycles=20.0), "start": "as described"}
     found = concio.dynamics(wall, duration=duration, step=2e-3, **options)

@@ -149,9 +149,9 @@ def second_solve() -> None:
         settler = [lambda s=s, u=u, t=sticking: Settler(s).settle(s, u, t)]
         last = solution.displacement, solution.normal_force, solution.friction_force
         nearby, more = Nearby(), problem.with_loads(1.02 * problem.f)
-        if nearby.solve(problem, last) is None or nearby.solve(more, last) is None:
+        if nearby.answer(problem, last) is None or nearby.solve(more, last) is None:
             raise AssertionError("the next load step is not found from the last")
-        step = [lambda n=nearby, p=more, t=last: n.solve(p, t)]
+        step = [lambda n=nearby, p=more, t=last: n.answer(p, t)]
         best, scaling, settling, next_step = (
             1e3 * min(timed(work) for _ in range(20)) for work in whole + settler + step
         )

@@ -147,7 +147,7 @@ class LinearisedState:
             The equations have no answer: the structure can move with these states.
         """
         n, m = self.problem.unknowns, self.problem.pairs
-        z = self._equations.solve(-slope)
+        z = self._equations.answer(-slope)
         return Rates(z[:n], z[n : n + m], z[n + m :].reshape(m, self.problem.dim - 1))
 
     @cached_property
@@ -240,7 +240,7 @@ class _Equations:
             null = self.factor.solve(soft * null)
         self.open = (np.abs(null) > OPEN) & (soft > 0)
 
-    def solve(self, wanted: Array) -> Array:
+    def answer(self, wanted: Array) -> Array:
         """Return x, ``nan`` where it is not determined.
 
         Raises

@@ -62,7 +62,7 @@ class Method:
                 msg = f"method '{self.name}' has no option '{option}' for {SPACES[problem.dim]}"
                 raise MethodError(msg, hint="one of: " + ", ".join(o for o in options_of(solver) if o != "progress"))
 
-        def solve(part: Part) -> Solution:
+        def of_part(part: Part) -> Solution:
             if problem.pairs and not part.problem.pairs:  # K u = f, or a body that nothing holds
                 linear = METHODS["sparse-lemke" if problem.dim == 2 else "auto"].solver(problem.dim)
                 return linear(part.problem, progress=progress)
@@ -70,7 +70,7 @@ class Method:
 
         if any(options.get(name) is not None for name in GIVEN):
             return self._checked(solver(problem, progress=progress, **options))
-        return solve_apart(problem, solve)
+        return solve_apart(problem, of_part)
 
     def _checked(self, found: object) -> Solution:
         if not isinstance(found, Solution):

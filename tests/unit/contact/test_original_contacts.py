@@ -144,7 +144,7 @@ def test_the_certificate_of_a_motion_refuses_faults_in_the_rows_of_the_solve(mon
         stepper = Stepper(Reference.of(standing(tilt=0.1, friction=0.05, kind=kind), G), Scheme())
         state = stepper.located(MotionState.at_rest(stepper.reference))
         drive, worst, own = Drive(np.array([1.0, 0.0]), np.zeros(2), {}), 0.0, 0.0
-        inner = stepper.solver.solve
+        inner = stepper.solver.step
 
         def solve(*args):
             nonlocal own
@@ -152,7 +152,7 @@ def test_the_certificate_of_a_motion_refuses_faults_in_the_rows_of_the_solve(mon
             own = max(own, found.residual)
             return found
 
-        stepper.solver.solve = solve
+        stepper.solver.step = solve
         for _ in range(steps):
             state, report = stepper.step(state, 2e-3, drive)
             worst = max(worst, report.solution.residual)

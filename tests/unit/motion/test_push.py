@@ -230,14 +230,14 @@ def test_a_block_that_hangs_straight_on_a_stiff_tie_stretches_it():
 
 def test_steps_that_nothing_solves_end_a_push_in_words(monkeypatch):
     """From some problem on no answer moves anything: the curve until there is kept, and few more are tried."""
-    first, solve, asked = 80, StepSolver.solve, []
+    first, solve, asked = 80, StepSolver.step, []
 
     def fails(self, p, states, x, t):
         found = solve(self, p, states, x, t)
         asked.append(found)
         return found if len(asked) < first else replace(found, x=np.zeros_like(found.x), residual=1e-6)
 
-    monkeypatch.setattr(StepSolver, "solve", fails)
+    monkeypatch.setattr(StepSolver, "step", fails)
     curve = concio.push(standing(0.2, 1.0))
     assert curve.ending is PushEnding.NO_EQUILIBRIUM
     assert curve.certified

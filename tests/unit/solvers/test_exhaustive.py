@@ -134,22 +134,22 @@ def test_a_proof_holds_only_with_its_reasons() -> None:
     """Drop any reason of a minimal proof and the relaxation is not empty; a made-up combination proves nothing."""
     problem = next(p for p in map(tiny, range(30)) if not some_state_exists(p))
     lp = Relaxation(problem)
-    assert not isinstance(lp.solve(np.zeros(lp.n, dtype=bool)), Empty)
+    assert not isinstance(lp.point(np.zeros(lp.n, dtype=bool)), Empty)
     questions = StateQuestions(lp.m, lp.reduction.rough)
     everything = questions.fixed([2 * q + 1 for q in range(questions.count)])  # all pairs stick
-    found = lp.solve(everything)
+    found = lp.point(everything)
     assert isinstance(found, Empty)
     minimal = found
     for column in found.reasons:
         trial = np.zeros(lp.n, dtype=bool)
         trial[minimal.reasons[minimal.reasons != column]] = True
-        fewer = lp.solve(trial)
+        fewer = lp.point(trial)
         if isinstance(fewer, Empty):
             minimal = fewer
     for column in minimal.reasons:
         trial = np.zeros(lp.n, dtype=bool)
         trial[minimal.reasons[minimal.reasons != column]] = True
-        assert not isinstance(lp.solve(trial), Empty)
+        assert not isinstance(lp.point(trial), Empty)
     rng = np.random.default_rng(0)
     rows = lp.m + lp.k + problem.rigid_motions
     assert all(lp.proof(rng.normal(size=rows), everything) is None for _ in range(20))

@@ -115,10 +115,10 @@ def test_the_next_step_is_found_from_the_last_without_an_iteration(dim):
     model = concio.wall(length=1.5, height=0.75, block="rigid", friction=0.6, horizontal=0.2)
     assembly = lend(concio.assemble(model if dim == 2 else concio.extrude(model, 0.3)))
     nearby, problem = Nearby(), assembly.problem({"live": 0.5})
-    assert nearby.solve(problem, tuple(np.zeros_like(part) for part in state_of(find("auto")(problem)))) is None
+    assert nearby.answer(problem, tuple(np.zeros_like(part) for part in state_of(find("auto")(problem)))) is None
     for factor in (0.51, 0.53):
         last, problem = find("auto")(problem), assembly.problem({"live": factor})
-        found, fresh = nearby.solve(problem, state_of(last)), find("interior-point")(problem)
+        found, fresh = nearby.answer(problem, state_of(last)), find("interior-point")(problem)
         assert found is not None
         assert found.solved
         assert found.iterations == 0 < fresh.iterations
@@ -132,7 +132,7 @@ def test_a_state_far_away_is_no_excuse_for_a_wrong_answer(panel):
     last = state_of(engine.solve(problem))
     for live in (-PUSH, 0.0, 2 * PUSH):
         other = panel.problem({"dead": 1.0, "live": live})
-        found = nearby.solve(other, last)
+        found = nearby.answer(other, last)
         assert (found is None) == (live != 0.0)
         assert found is None or certify(other, *state_of(found)).worst <= 1e-9
 

@@ -92,14 +92,14 @@ def test_settlement_out_of_the_plane_breaks_the_symmetry(monkeypatch: pytest.Mon
     are found from where the last two lead; from the last state itself two of three are not.
     """
     tried: list[bool] = []
-    solve = Nearby.solve
+    solve = Nearby.answer
 
     def counted(self: Nearby, *args: Any) -> Solution | None:
         found = solve(self, *args)
         tried.append(found is not None)
         return found
 
-    monkeypatch.setattr(Nearby, "solve", counted)
+    monkeypatch.setattr(Nearby, "answer", counted)
     turning = concio.Support("turns", "right abutment", rotation=(0.02, 0.0, 0.0))
     model = replace(concio.extrude(ARCH, 0.7), supports=(turning,))
     found = concio.settle(model)

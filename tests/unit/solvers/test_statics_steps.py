@@ -67,7 +67,7 @@ def test_pivoting_goes_on_from_the_states_a_step_has_reached(monkeypatch):
         active=np.ones(m, dtype=bool), force=5.0, length=2.0,
     )  # fmt: skip
     all_closed = PairStates.plane(np.ones(m), zero)
-    answer = StepSolver().solve(p, all_closed, np.zeros(3), np.zeros((m, 2)))
+    answer = StepSolver().step(p, all_closed, np.zeros(3), np.zeros((m, 2)))
     assert answer.residual < 1e-12
     assert (answer.states.code == PairState.SLIP).all()
 
@@ -81,7 +81,7 @@ def test_pivoting_goes_on_from_the_states_a_step_has_reached(monkeypatch):
     monkeypatch.setattr(
         step_solver.sparse_lemke, "solve", lambda problem, **known: handed.append(known) or pivot(problem, **known)
     )
-    found = StepSolver().solve(p, all_closed, np.zeros(3), np.zeros((m, 2)))
+    found = StepSolver().step(p, all_closed, np.zeros(3), np.zeros((m, 2)))
     assert (handed[0]["start_states"].code == PairState.SLIP).all()
     assert found.how == "pivoting"
     assert found.residual < 1e-12

@@ -94,7 +94,7 @@ class Impact:
         struck = np.flatnonzero(self.joint.struck)
         gap[struck] -= (1.0 - share) * self.scheme.restitution * self.joint.y0[struck, 0]
         p = replace(self.problem, gap=gap)
-        return self._hard(p, self.solver.solve(p, near.states, near.x, near.t))
+        return self._hard(p, self.solver.step(p, near.states, near.x, near.t))
 
     def _gives(self, found: StepSolution) -> bool:
         """Return whether the works of what is hit are a gain."""
@@ -107,10 +107,10 @@ class Impact:
     def _again(self, found: StepSolution, taken: Array) -> tuple[StepSolution, Array]:
         """Return the answer near to that of nearly the same step, the compliance counted from the forces it has."""
         p, (lent_n, lent_t) = self.problem, self._lent(self.problem)
-        again = self.solver.solve(_counted(p, lent_n, lent_t, found.t), found.states, found.x, found.t)
+        again = self.solver.step(_counted(p, lent_n, lent_t, found.t), found.states, found.x, found.t)
         if again.residual <= CERTIFIED:
             return again, found.t
-        return self._hard(p, self.solver.solve(p, found.states, found.x, found.t))
+        return self._hard(p, self.solver.step(p, found.states, found.x, found.t))
 
     def _hard(self, problem: StepProblem, found: StepSolution) -> tuple[StepSolution, Array]:
         """Return the answer of a problem without the compliance added to joints, and the forces it counts from."""
@@ -123,7 +123,7 @@ class Impact:
             if left <= enough or found.residual > CERTIFIED:
                 break
             before = found.t
-            again = self.solver.solve(_counted(problem, lent_n, lent_t, before), found.states, found.x, found.t)
+            again = self.solver.step(_counted(problem, lent_n, lent_t, before), found.states, found.x, found.t)
             if again.residual > CERTIFIED:
                 break
             found, counted = again, before

@@ -211,7 +211,7 @@ class Statics(SmallDisplacements):
 
     def _solved(self, p: StepProblem, states: PairStates, t: Array, x: Array | None = None) -> StepSolution:
         """Return the solution of a step problem, begun with displacements x (N,) or none; count it if it is none."""
-        found = self.solver.solve(p, states, np.zeros(self.frames.n) if x is None else x, t)
+        found = self.solver.step(p, states, np.zeros(self.frames.n) if x is None else x, t)
         self._unsolved += not found.residual <= CERTIFIED
         return found
 

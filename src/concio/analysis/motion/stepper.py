@@ -179,7 +179,7 @@ class Stepper:
             states.normal[k:] = ties.states()
         t0 = np.zeros((count, problem.dim))
         t0[:m] = memory.force
-        found = self.solver.solve(problem, states, x0, t0)
+        found = self.solver.step(problem, states, x0, t0)
         returned: Returned | None = None
         change = np.inf
         for _ in range(SWINGS):
@@ -196,7 +196,7 @@ class Stepper:
                 break
             problem, inner = replace(problem, b=problem.b + again - inner), again
             if not joint.impact:
-                found = self.solver.solve_again(problem, found)
+                found = self.solver.step_again(problem, found)
         theta = self.scheme.theta
         x = theta * found.x + (1 - theta) * x0
         y = relative(rows.columns, rows.values, x) + rows.imposed

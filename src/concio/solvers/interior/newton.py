@@ -154,7 +154,7 @@ class NewtonStep:
         products = Products(z.t[:, 0] * z.y_n, scaling.square, residuals.room * z.p if s.any_capped else None)
         return cls(s, z, residuals, dilatancy, scaling, H, D, products, enough)
 
-    def solve(self, r: Array, b: Array) -> tuple[Array, Array] | None:
+    def increments(self, r: Array, b: Array) -> tuple[Array, Array] | None:
         """Return (du, dt) of K du - C'dt = r, C du + H dt = b; None if refinement fails."""
         s, pushed = self.s, times(self.D, b)
         du = s.factor.solve(r + s.pull(pushed))
@@ -195,7 +195,7 @@ class NewtonStep:
         pressed = None if change.q is None else np.where(s.cone.capped, change.q / r.room, 0.0)
         if pressed is not None:
             b[:, 0] -= pressed
-        found = self.solve(-r.u, b)
+        found = self.increments(-r.u, b)
         if found is None:
             return None
         du, dt = found

@@ -65,7 +65,7 @@ def find_direction(
     runaway: Array | None = None
     for round_ in range(ROUNDS_ALL + ROUNDS_ONE):
         if round_ or first is None:
-            direction, residual = equations.solve(unit)
+            direction, residual = equations.refined(unit)
             creep = equations.creep
         else:
             direction, creep, residual = first.direction, first.creep, 0.0
@@ -107,7 +107,7 @@ def self_stress(equations: PathEquations, runaway: Array) -> Array | None:
         return None
     x = runaway / top
     x[:n], x[-1] = 0.0, 0.0
-    change, residual = equations.solve(equations.multiply(x))  # puts it on the equations, by the least change
+    change, residual = equations.refined(equations.multiply(x))  # puts it on the equations, by the least change
     x = x - change
     if residual > TRUE or float(np.abs(change).max()) > SELF_STRESS * 1e2:
         return None
@@ -176,7 +176,7 @@ def by_lemke(
     for i, sign in ((2, 1.0), (3, -1.0)):
         B[n + m + sets[i], pick[i]] = sign
         B[n + sets[i], pick[i]] += d.dilatancy[sets[i]] * closed[sets[i]]
-    X, residual = equations.solve(np.column_stack([unit, B]))
+    X, residual = equations.refined(np.column_stack([unit, B]))
     if residual > TRUE:
         blocked = self_stress(equations, X[:, 0]) is not None
         if not (blocked or lent):
@@ -219,7 +219,7 @@ def by_lemke(
 
 def consistent(equations: PathEquations, unit: Array) -> Rates | None:
     """Return the rates of the present states, or their self-stress; None where they admit neither."""
-    direction, residual = equations.solve(unit)
+    direction, residual = equations.refined(unit)
     creep = equations.creep
     if residual > TRUE:
         stress = self_stress(equations, direction)

@@ -237,7 +237,7 @@ class PathEquations:
             self.factorise()
             return np.asarray(self.factors.solve(b))
 
-    def solve(self, b: Array, rounds: int = 8) -> tuple[Array, float]:
+    def refined(self, b: Array, rounds: int = 8) -> tuple[Array, float]:
         """Solve with the true matrix by refinement; b (size,) or (size, k).
 
         What the added compliance adds to the answer is kept in ``creep`` (like b): where redundant pairs do not move at
@@ -268,7 +268,7 @@ class PathEquations:
             x, creep = x + change, creep - change
         if smallest > POOR and not self.careful and self.control[-1] != 1.0:
             self.factorise(careful=True)  # under displacement control the matrix should be regular: try harder
-            return self.solve(b, rounds)
+            return self.refined(b, rounds)
         return best, smallest
 
     def null_motion(self, runaway: Array) -> Array:

@@ -109,7 +109,7 @@ class Nearby:
         self._kept[which] = scale(problem) if kept is None else kept.renewed(problem)
         return self._kept[which]
 
-    def solve(self, problem: ContactProblem, begin: State, which: str = "as it is") -> Solution | None:
+    def answer(self, problem: ContactProblem, begin: State, which: str = "as it is") -> Solution | None:
         """Return the answer of a problem whose states differ in few pairs from those of a point, if it has one.
 
         Parameters
@@ -169,14 +169,14 @@ def solve_near(
     """
     plane, begin = problem.dim == 2, begin or (u, t_n, t_t)
 
-    def solve(step: ContactProblem, which: str) -> Solution:
-        found = None if nearby is None else nearby.solve(step, begin, which)
+    def one(step: ContactProblem, which: str) -> Solution:
+        found = None if nearby is None else nearby.answer(step, begin, which)
         return found or engine.solve(step, homotopy=False, starts=starts if plane else None, progress=progress)
 
     if not needed(problem):
-        return solve(problem, "as it is")
+        return one(problem, "as it is")
     soft = softened(problem, u, t_n, t_t)
-    first = solve(soft, "softened")
+    first = one(soft, "softened")
     if not first.solved:
         return replace(first, method=NAME)
     s = scale(problem) if nearby is None else nearby.scaled(problem)

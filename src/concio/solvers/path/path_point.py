@@ -90,7 +90,7 @@ class PathPoint:
         size = float(np.abs(self.x).max(initial=0.0)) + float(np.abs(b).max(initial=0.0))
         left = b - self.equations.multiply(self.x)
         if float(np.abs(left).max()) > ON_EQUATIONS * size:
-            change, _ = self.equations.solve(left)  # of least size where forces are not unique
+            change, _ = self.equations.refined(left)  # of least size where forces are not unique
             if np.abs(change).max() <= 1e-6 * size:
                 self.x = self.x + change
         if float(np.abs(self.x[: self.equations.n]).max(initial=0.0)) > FAR:
@@ -111,7 +111,7 @@ class PathPoint:
         left[-1] = 0.0
         size = float(np.abs(self.x[n:]).max(initial=0.0)) + float(np.abs(b[:n]).max(initial=0.0))
         if float(np.abs(left).max()) > ON_EQUATIONS * size:
-            change, _ = e.solve(left)
+            change, _ = e.refined(left)
             if np.abs(change[n:]).max() <= 1e-6 * size:
                 self.x = self.x + change
 

@@ -181,7 +181,7 @@ def solve_step(
 def settled(path: LinearPath, point: PathState, parameter: float, solution: Solution) -> Solution:
     """Solve one load step again from the contact states of an answer less accurate than the states of a path."""
     begin = (solution.displacement, solution.normal_force, solution.friction_force)
-    return Nearby().solve(step_problem(path, point, parameter), begin) or solution
+    return Nearby().answer(step_problem(path, point, parameter), begin) or solution
 
 
 def is_jump(
@@ -200,7 +200,7 @@ def step_between(path: LinearPath, point: PathState, state: PathState, parameter
     here = (point.displacement, point.normal_force, point.friction_force)
     there = (state.displacement, state.normal_force, state.friction_force)
     begin = tuple(a + TENTH * (b - a) for a, b in zip(here, there, strict=True))
-    return Nearby().solve(step_problem(path, point, parameter), begin)
+    return Nearby().answer(step_problem(path, point, parameter), begin)
 
 
 def shrinks(point: PathState, state: PathState, closer: Solution) -> bool:

@@ -53,6 +53,6 @@ def state_rates(path: LinearPath, states: PairStates) -> StateRates:
     control = np.zeros(n + 2 * m + 1)
     control[-1] = 1.0
     equations = PathEquations(replace(scaled, path=slow), states.normal, states.sign, control)
-    x, residual = equations.solve(control)
+    x, residual = equations.refined(control)
     length, force = scaled.length * unit, scaled.force * unit
     return StateRates(x[:n] * length, x[n : n + m] * force, x[n + m : -1, None] * force, residual)

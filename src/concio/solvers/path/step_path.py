@@ -161,12 +161,12 @@ def _step(
     problem, last = step_problem(path, states[-1], parameter), _point(states[-1])
     begin = last if problem.dim == 2 else extrapolated(states, parameter)
 
-    def solve(part: Part) -> Solution:
+    def of_part(part: Part) -> Solution:
         kept = nearby.setdefault(part.pairs.tobytes(), near_forces.Nearby())
         here, there = _own(part, last), _own(part, begin)
         return _near(part.problem, here, there, solver, kept, near_only=near_only)
 
-    return solve_apart(problem, solve)
+    return solve_apart(problem, of_part)
 
 
 def _own(part: Part, whole: near_forces.State) -> near_forces.State:
@@ -189,7 +189,7 @@ def _near(
         nothing = judge(problem, *(np.zeros_like(part) for part in last), method=near_forces.NAME)
         return nothing if nothing.solved else solver(problem)
     if not near_forces.needed(problem):
-        return nearby.solve(problem, begin) or solver(problem)
+        return nearby.answer(problem, begin) or solver(problem)
     solution = near_forces.solve_near(problem, *last, nearby=nearby, begin=begin)
     return solution if solution.solved or near_only else solver(problem)
 

@@ -136,7 +136,7 @@ def _states_moved(s: Scaled, now: Finished, e: float) -> Departure | None:
     u, t, step = now.u, now.t, now.u
     given, laws, springs = GivenStates(s), laws_of(s, now.states), e * s.inertia
     for _ in range(STATE_STEPS):
-        new, t, _ = given.solve(s, laws, u, t, springs=springs)
+        new, t, _ = given.refined(s, laws, u, t, springs=springs)
         step, u = new - u, new
         if not 1.0 <= float(np.abs(step).max()) < np.inf:
             return None  # it comes to rest
@@ -145,7 +145,7 @@ def _states_moved(s: Scaled, now: Finished, e: float) -> Departure | None:
     held = replace(s, f=s.f - s.inertia @ a)
     u = u - step * (float(step @ u) / float(step @ step))
     for _ in range(2):
-        u, t, _ = given.solve(held, laws, u, t)
+        u, t, _ = given.refined(held, laws, u, t)
     return _proof(s, a, u, t)
 
 

@@ -46,7 +46,7 @@ class GivenStates:
         self.blocks = UpdatedBlocks(s.factor, s.C, s.f.size, s.dim)
         self.solves = 0
 
-    def solve(
+    def refined(
         self,
         s: Scaled,
         laws: PairLaws,

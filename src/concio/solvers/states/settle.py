@@ -192,7 +192,7 @@ class _Run:
     def solved(self, states: PairStates, u: Array, t: Array) -> tuple[Array, Array, Array, PairStates]:
         """Solve for given states; return u, t, which pairs (m,) contradict them, and the states they show instead."""
         laws_here = laws_of(self.s, states)
-        u, t, _ = self.given.solve(self.s, laws_here, u, t, self.anchor, springs=self.springs, accuracy=TRIED)
+        u, t, _ = self.given.refined(self.s, laws_here, u, t, self.anchor, springs=self.springs, accuracy=TRIED)
         error, laws = natural_residual(self.s, u, t)
         shown = read_states(self.s, u, t)
         wrong = (laws > EXACT) & shown.differ(states)
@@ -200,7 +200,7 @@ class _Run:
             if error < EXACT or wrong.any():
                 break
             self.anchor = u
-            v, p, _ = self.given.solve(self.s, laws_here, u, t, self.anchor, springs=self.springs, own=True)
+            v, p, _ = self.given.refined(self.s, laws_here, u, t, self.anchor, springs=self.springs, own=True)
             new, laws = natural_residual(self.s, v, p)
             if not new < error:
                 break
@@ -225,7 +225,7 @@ class _Run:
         if found.error <= REFINED:
             return found
         laws = laws_of(self.s, found.states)
-        u, t, _ = self.given.solve(self.s, laws, found.u, found.t, found.u, springs=self.springs)
+        u, t, _ = self.given.refined(self.s, laws, found.u, found.t, found.u, springs=self.springs)
         error, _ = natural_residual(self.s, u, t)
         return replace(found, u=u, t=t, error=error) if error <= max(found.error, EXACT) else found
 

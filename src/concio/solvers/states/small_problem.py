@@ -91,7 +91,7 @@ def decide(
     soft[pick, 0] = SOFT / s.share[pick]
     held = replace(s, compliance=s.compliance + soft, x=s.x - soft * t)
     laws = laws_of(held, PairStates.plane(normal, sign))
-    u, t, _ = given.solve(held, laws, u, t, anchor, springs=springs, columns=pick)
+    u, t, _ = given.refined(held, laws, u, t, anchor, springs=springs, columns=pick)
     D = block_diagonal(laws.blocks()[pick])
     S = D - D @ given.blocks.flexibility(pick) @ D
     answer = _lemke(s.cone[pick], s.dilatancy[pick], t[pick], S)

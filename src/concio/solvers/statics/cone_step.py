@@ -113,7 +113,7 @@ class Step:
                 it.degenerate = True
         return cls(it, p, g, (r_p, r_d, r_g), beta, scaling, F, squeeze, border)
 
-    def solve(self, b: Array) -> tuple[Array, float, Array] | None:
+    def increments(self, b: Array) -> tuple[Array, float, Array] | None:
         """Return (dt, d lambda, dv) of C'dt + g d lambda = -r_p, F'C dv + F^-1 dt = b, g'dv = r_g, refined so."""
         it, g = self.it, self.g
         r_p, _, r_g = self.rest
@@ -191,7 +191,7 @@ class Step:
         # where F = G^-1 W squeeze, F'G' eta is taken from its scaled value, which loses nothing
         b = times(self.F.transpose(0, 2, 1), rest)
         b[both] += (scaled - self.squeeze * (self.squeeze * scaled).sum(axis=1, keepdims=True))[both]
-        found = self.solve(b)
+        found = self.increments(b)
         if found is None:
             return None
         dt, dl, dv = found

@@ -100,7 +100,7 @@ class LinearStep:
     factor: Solves
     D: Array
 
-    def solve(self, p: StepProblem, x: Array, t: Array) -> tuple[Array, Array, Errors]:
+    def refined(self, p: StepProblem, x: Array, t: Array) -> tuple[Array, Array, Errors]:
         """Return x, t and the errors of a step with these states, by refinement from a point."""
         return solve_states(p, self.factor, self.laws, x, t, self.D)
 
@@ -157,7 +157,7 @@ def settle(p: StepProblem, factor: Factor, states: PairStates, x: Array, t: Arra
             own = LinearStep(settled, asked.updated(D_now), D_now)
         except SingularMatrixError:
             break
-        x1, t1, errors = own.solve(p, x, t)
+        x1, t1, errors = own.refined(p, x, t)
         residual, laws1 = p.violation(t1, errors)
         if residual < found.residual:
             found = Settled(x1, t1, now, residual, own)

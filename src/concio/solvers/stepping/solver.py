@@ -43,20 +43,20 @@ class StepSolver:
         """Forget the pattern: the rows meet other unknowns from now on."""
         self.factor = self._linear = None
 
-    def solve_again(self, p: StepProblem, found: StepSolution) -> StepSolution:
-        """Solve a step of which only the forces have changed a little since :meth:`solve`, with the factors of then.
+    def step_again(self, p: StepProblem, found: StepSolution) -> StepSolution:
+        """Solve a step of which only the forces have changed a little since :meth:`step`, with the factors of then.
 
         Where the states or the slips have become others, the step is solved again.
         """
         if self._linear is not None:
-            x, t, errors = self._linear.solve(p, found.x, found.t)
+            x, t, errors = self._linear.refined(p, found.x, found.t)
             residual, _ = p.violation(t, errors)
             if residual < STEP_GOOD:
                 return StepSolution(x, t, found.states, residual, found.how, found.factorisations)
-        again = self.solve(p, found.states, found.x, found.t)
+        again = self.step(p, found.states, found.x, found.t)
         return replace(again, factorisations=found.factorisations + again.factorisations)
 
-    def solve(self, p: StepProblem, states: PairStates, x: Array, t: Array, *, polish: bool = True) -> StepSolution:
+    def step(self, p: StepProblem, states: PairStates, x: Array, t: Array, *, polish: bool = True) -> StepSolution:
         """Solve a step from the states of the one before and a point near the answer.
 
         In space the interior point ends where Newton's method in the states it found does the rest (``polish``).
@@ -82,7 +82,7 @@ class StepSolver:
             try:
                 factor.factorise(D)
                 self._linear = LinearStep(linear, factor, D)
-                x1, t1, errors = self._linear.solve(p, x, t)
+                x1, t1, errors = self._linear.refined(p, x, t)
             except SingularMatrixError:
                 break
             residual, laws = p.violation(t1, errors)
@@ -106,7 +106,7 @@ class StepSolver:
             states = new
         found = self._fallback(p, best)
         if p.dim == 3 and found.how == "interior point" and found.residual >= STEP_SETTLED and polish:
-            found = self.solve(p, found.states, found.x, found.t, polish=False)
+            found = self.step(p, found.states, found.x, found.t, polish=False)
         return self._count(found)
 
     def response(self, p: StepProblem, states: PairStates, f: Array) -> Array:

@@ -113,7 +113,7 @@ class Relaxation:
         highs.passModel(lp)
         return highs
 
-    def solve(self, fixed: Array) -> Point | Empty | None:
+    def point(self, fixed: Array) -> Point | Empty | None:
         """Solve with columns ``fixed`` (n,) at zero; None where the solver or its proof is not to be trusted."""
         changed = np.flatnonzero(fixed != self.fixed).astype(np.int32)
         if changed.size:

@@ -161,7 +161,7 @@ class Search:
             if conflict is None:
                 self.nodes += 1
                 self.depth = max(self.depth, self.clauses.level)
-                found = self.lp.solve(self.questions.fixed(self.clauses.trail))
+                found = self.lp.point(self.questions.fixed(self.clauses.trail))
                 if isinstance(found, Empty):
                     conflict = self.excluded(found)
                 else:
@@ -188,7 +188,7 @@ class Search:
             if not order:
                 if found is not None:
                     return
-                found = self.lp.solve(questions.fixed(clauses.trail))
+                found = self.lp.point(questions.fixed(clauses.trail))
                 if not isinstance(found, Point):
                     return
                 order = self.violated(found)
@@ -201,7 +201,7 @@ class Search:
             conflict = clauses.propagate()
             if conflict is None:
                 self.nodes += 1
-                trial = self.lp.solve(questions.fixed(clauses.trail))
+                trial = self.lp.point(questions.fixed(clauses.trail))
                 conflict = self.excluded(trial) if isinstance(trial, Empty) else None
                 yield None
             if conflict is None:
