@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from concio.analysis.seismic.default_parts import Part, _lines, _pairs_of, _spread, _told_apart, structures_of
+from concio.analysis.seismic.searching import SAME, _alike
 
 UP, ALONG = np.array([0.0, 1.0]), np.array([1.0, 0.0])
 
@@ -70,3 +71,20 @@ def test_names_have_as_many_digits_as_tell_them_apart() -> None:
     ]  # fmt: skip
     far = _told_apart((Part("beyond", 12.34561, (1,), "b"), Part("beyond", 12.35, (2,))))
     assert [part.name for part in far] == ["beyond 12.35 m along the push of 'b'", "beyond 12.35 m along the push"]
+
+
+@pytest.mark.parametrize("unit", [1e-9, 1.0, 1e9])
+def test_two_searches_met_one_mechanism_where_multiplier_and_blocks_are_the_same(unit: float) -> None:
+    def met(multiplier: float, blocks: dict[int, int] | None) -> SimpleNamespace:
+        return SimpleNamespace(
+            multiplier=unit * multiplier, mechanics=None if blocks is None else SimpleNamespace(of_body=blocks)
+        )
+
+    one = met(0.25, {1: 0, 2: 1})
+    assert _alike(one, met(0.25 * (1 + 0.5 * SAME), {1: 0, 2: 1}))
+    assert not _alike(one, met(0.25, {1: 0, 2: 0}))
+    for share in (1 + 2 * SAME, 1 - 2 * SAME, -1.0):
+        assert not _alike(one, met(0.25 * share, {1: 0, 2: 1}))
+        assert not _alike(met(0.25 * share, {1: 0, 2: 1}), one)
+    assert not _alike(one, met(0.25, None))
+    assert not _alike(met(0.25, None), met(0.25, None))
