@@ -7,6 +7,7 @@ import math
 import pytest
 
 from concio.analysis.seismic.code import find_code
+from concio.analysis.seismic.site import Site
 from concio.errors import InputError
 
 NTC = {  # table 3.2.IV: S_S between low and high of constant - slope F0 a_g/g, and C_C = factor T_C*^power; T_E
@@ -68,3 +69,17 @@ def test_what_the_tables_do_not_hold_is_refused() -> None:
     for nominal in (0.0, -1.0, math.inf, math.nan):
         with pytest.raises(InputError, match="must be positive"):
             code.reference_life(nominal, "II")
+
+
+def test_limit_states_that_are_known_asked_for_and_ultimate() -> None:
+    points = {level: {"a_g": a_g, "F0": 2.4, "Tc": 0.3} for level, a_g in (("SLV", 0.2), ("SLD", 0.1), ("SLO", 0.08))}
+    site = Site(points)
+    assert site.levels == ("SLO", "SLD", "SLV")
+    assert site.ultimate(("SLO", "SLD", "SLV", "SLC")) == ("SLV", "SLC")
+    assert site.ultimate(("SLV",)) == ("SLV",)
+    assert site.ultimate(("SLO", "SLD")) == ("SLO", "SLD"), "where there is none, all of them"
+    assert site.ultimate(()) == ()
+    assert "SLO" not in site.asked_by_code
+    assert {"SLD", "SLV"} <= set(site.asked_by_code)
+    table = Site([{"T_R": T_R, "a_g": a_g, "F0": 2.4, "Tc": 0.3} for T_R, a_g in ((30, 0.05), (475, 0.2), (975, 0.3))])
+    assert table.levels == table.asked_by_code
