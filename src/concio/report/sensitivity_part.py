@@ -53,4 +53,5 @@ def sensitivity_html(
     sides = " " + t.say(f"{of}_sides") if any(row.one_sided for row in found.rows) else ""
     text = t.say("sens_sentence", parts="; ".join(told) or t.words["sens_none"])
     drawn = t.figure(sensitivity_figure(found, t.words[f"{of}_axis"], name), f"figure_{of}", "bars")
-    return f"<p>{t.say(f'{of}_text', of=named, value=value)}{sides}</p>{drawn}<p>{text}</p>"
+    told_of = t.say(f"{of}_text", of=named, value=value)
+    return f"<div class=keep><p>{told_of}{sides}</p>{drawn}<p>{text}</p></div>"
