@@ -7,7 +7,7 @@ import math
 import pytest
 
 from concio.analysis.seismic.code import find_code
-from concio.analysis.seismic.site import Site
+from concio.analysis.seismic.site import LARGEST, Hazard, Site
 from concio.errors import InputError
 
 NTC = {  # table 3.2.IV: S_S between low and high of constant - slope F0 a_g/g, and C_C = factor T_C*^power; T_E
@@ -83,3 +83,16 @@ def test_limit_states_that_are_known_asked_for_and_ultimate() -> None:
     assert {"SLD", "SLV"} <= set(site.asked_by_code)
     table = Site([{"T_R": T_R, "a_g": a_g, "F0": 2.4, "Tc": 0.3} for T_R, a_g in ((30, 0.05), (475, 0.2), (975, 0.3))])
     assert table.levels == table.asked_by_code
+
+
+@pytest.mark.parametrize(
+    ("key", "low", "high", "beyond"),
+    [("a_g", 1e-6, LARGEST, LARGEST * 1.001), ("F0", 1.0, 5.0, 5.001), ("T_star", 0.05, 2.0, 2.001)],
+)
+def test_the_numbers_of_a_hazard_have_bounds(key: str, low: float, high: float, beyond: float) -> None:
+    given = {"T_R": 475.0, "a_g": 0.2, "F0": 2.4, "T_star": 0.3}
+    for value in (low, 0.5 * (low + high), high):
+        assert getattr(Hazard(**(given | {key: value})), key) == value
+    for value in (0.0, -0.1, 0.999 * low if low > 1e-3 else 0.0, beyond, math.inf, math.nan):
+        with pytest.raises(InputError):
+            Hazard(**(given | {key: value}))
