@@ -1,0 +1,60 @@
+"""Rates along a path: what counts as none is a share of the largest rate of its kind, whatever their units."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from concio.problem.cone import Cone
+from concio.solvers.path.rates import rates, values
+
+N, M = 3, 2
+
+
+def equations(lent: float = 0.0) -> SimpleNamespace:
+    """Two pairs; the first unknowns are their openings, the third the slip of both."""
+    cone = Cone(np.full(M, 0.5), np.array([2.0, 0.0]), np.array([1.0, 0.0]), np.array([10.0, np.inf]))
+    return SimpleNamespace(
+        data=SimpleNamespace(dilatancy=np.array([0.1, 0.0]), cone=cone), n=N, m=M, lent=np.full(M, lent),
+        positions=lambda x, rate=False: (x[:M].copy(), np.full(M, x[2])),
+    )  # fmt: skip
+
+
+def direction(u: float = 1.0, t: float = 1.0) -> np.ndarray:
+    """Openings 2 and -1, slip 3; normal forces 4 and -7, friction 1 and 5; and the rate of the load."""
+    return np.concatenate([u * np.array([2.0, -1.0, 3.0]), t * np.array([4.0, -7.0, 1.0, 5.0]), [1.0]])
+
+
+@pytest.mark.parametrize("u", [0.1, 1.0, 10.0])
+@pytest.mark.parametrize("t", [0.1, 1.0, 10.0])
+def test_rates_of_pairs_and_what_counts_as_none(u: float, t: float) -> None:
+    found, one = rates(equations(), direction(u, t)), rates(equations(), direction())
+    assert found.opening == pytest.approx(u * np.array([2.0 - 0.3, -1.0]))
+    assert found.slip == pytest.approx([3.0 * u] * 2)
+    assert found.force == pytest.approx(t * np.array([4.0, -7.0]))
+    assert found.plus == pytest.approx(t * np.array([0.5 * 4 + 1, -0.5 * 7 + 5]))
+    assert found.minus == pytest.approx(t * np.array([0.5 * 4 - 1, -0.5 * 7 - 5]))
+    assert found.still == pytest.approx(u * one.still, rel=1e-9, abs=0.0)
+    assert found.calm == pytest.approx(t * one.calm, rel=1e-9, abs=0.0)
+    assert one.still / one.calm == pytest.approx(3.0 / 7.0), "shares of the largest motion and of the largest force"
+
+
+def test_creep_counts_where_nothing_moves_and_above_rounding() -> None:
+    still = direction(u=0.0)
+    creep = np.concatenate([[1e-3, -1e-30, 0.0], np.zeros(5)])
+    found = rates(equations(), still, creep)
+    assert found.creep_opening.tolist() == [1e-3, 0.0]
+    assert rates(equations(), direction(), creep).creep_opening.tolist() == [0.0, 0.0]
+
+
+def test_distances_from_the_bounds() -> None:
+    x = np.concatenate([[0.3, 0.0, 0.2], [4.0, 6.0, 1.0, -2.0], [1.0]])
+    found = values(equations(), x, np.array([0.1, 0.2]), np.array([0.01, 0.02]))
+    assert found.gap == pytest.approx([0.3 + 0.01 - 0.1 * 0.1, 0.02])
+    assert found.force == pytest.approx([5.0, 6.0])
+    assert found.room.tolist() == [6.0, np.inf]
+    assert found.plus == pytest.approx([2.0 + 2.0 + 1.0, 3.0 - 2.0])
+    assert found.minus == pytest.approx([2.0 + 2.0 - 1.0, 3.0 + 2.0])
+    assert found.gap_zero / found.force_zero == pytest.approx(0.3 / 6.0)
