@@ -344,3 +344,13 @@ def test_the_rise_of_a_semicircle_is_half_its_span_to_rounding(span: float) -> N
     with pytest.raises(concio.InputError, match="rises at most"):
         concio.arch(**options, shape="segmental", rise=0.5 * span * (1 + 1e-6))
     assert concio.arch(**options, shape="segmental", rise=0.5 * span * (1 - 1e-6)).bodies
+
+
+@pytest.mark.parametrize("span", [0.3, 3.0, 300.0])
+def test_an_arch_may_be_as_thick_as_its_pier_is_wide_and_no_thicker(span: float) -> None:
+    options = {"span": span, "voussoirs": 7, "pier_height": span, "pier_courses": 2, "spandrels": False}
+    for ring in (0.1 * span, 0.17 * span, 0.23 * span):
+        made = concio.arch_on_piers(**options, ring=ring, pier_width=ring)
+        assert np.ptp(np.vstack([b.vertices for b in made.free_bodies])[:, 0]) == pytest.approx(span + 2 * ring)
+        with pytest.raises(concio.InputError, match="thicker at its springing than the pier"):
+            concio.arch_on_piers(**options, ring=ring * (1 + 1e-6), pier_width=ring)
