@@ -7,7 +7,9 @@ from types import SimpleNamespace
 import pytest
 import shapely
 
-from concio.analysis.seismic.sections import _Facade
+from concio import JointLaw, Load, Rigid
+from concio.analysis.seismic.sections import Strip, _Facade
+from models import box, model_of
 
 
 def facade(**known: object) -> SimpleNamespace:
@@ -50,3 +52,37 @@ def test_a_course_has_the_area_and_weight_of_its_bodies_and_the_least_thickness_
     assert weight == pytest.approx(1.2 * 0.5 * 20.0 + 0.6 * 0.3 * 18.0 + 0.02 * 0.1 * 22.0)
     assert thick == 0.3
     assert _Facade._course(own, 3.0, 4.0, 0.0, 1.0) is None
+
+
+def strip(width: float, *, upper: float = 1.0, unit_weight: float = 20.0, load: float = 3.0, at: float = 0.0,
+          cap: float | None = None, shift: float = 0.0) -> Strip:  # fmt: skip
+    """Two courses 0.5 m thick and a load per metre of the strip's width."""
+    low = box("low", -0.25, 0.25, 0.0, 1.0, kind="rigid", material="stone", thickness=width)
+    high = box("high", -0.25 + shift, 0.25 + shift, 1.0, 1.0 + upper, kind="rigid", material="heavy", thickness=width)
+    ground = box("ground", -1.0, 1.0, -0.5, 0.0, kind="fixed", thickness=width)
+    section = model_of(
+        ground, low, high, law=JointLaw(0.6, compressive_strength=cap),
+        materials={"heavy": Rigid(unit_weight)},
+        loads=(Load("point", (0.0, -load * width), bodies=("high",), at=(at, 1.5)),),
+    )  # fmt: skip
+    return Strip("pier", (2.0, 2.0 + width), 0.0, section)
+
+
+def test_strips_that_differ_in_width_alone_are_alike_unless_their_joints_crush() -> None:
+    one = strip(1.0).likeness
+    assert strip(2.5).likeness == one
+    for other in ({"upper": 1.2}, {"unit_weight": 21.0}, {"load": 3.1}, {"at": 0.1}, {"shift": 0.01}):
+        assert strip(1.0, **other).likeness != one, other
+        assert strip(2.5, **other).likeness == strip(1.0, **other).likeness
+    assert strip(1.0, cap=500.0).likeness != strip(2.5, cap=500.0).likeness
+    weights = strip(1.0, upper=1.5, unit_weight=30.0).likeness[8:10]  # 10 kN and 22.5 kN
+    assert weights == pytest.approx((10.0 / 32.5, 22.5 / 32.5))
+
+
+def test_a_section_is_its_own_mirror_image_where_nothing_lies_aside() -> None:
+    assert strip(1.0).symmetric
+    assert not strip(1.0, at=1e-3).symmetric
+    assert not strip(1.0, at=-1e-3).symmetric
+    assert not strip(1.0, shift=1e-3).symmetric
+    assert strip(1.0).name == "pier, x = 2 to 3 m"
+    assert Strip("facade", (0.0, 3.0), 0.0, strip(1.0).section, of="c1").name == "facade of 'c1'"
