@@ -159,6 +159,12 @@ class StepProblem:
         C = sp.csr_array((self.values.ravel(), columns, ends), shape=(m * d, n + 1))
         return C, C.T
 
+    def share_rows(self, other: StepProblem) -> None:
+        """Take over what was worked out of the same rows and the same matrix in another problem."""
+        for name in ("rows", "flexibility") if self.matrix is other.matrix else ("rows",):
+            if name in other.__dict__:
+                self.__dict__[name] = other.__dict__[name]
+
     def opening(self, x: Array) -> Array:
         """Return C x (m, d), normal first."""
         C = self.rows[0]

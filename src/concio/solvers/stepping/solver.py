@@ -13,6 +13,7 @@ from concio.problem.tolerances import STEP_GOOD, STEP_SETTLED
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.interior import engine as interior
 from concio.solvers.pivoting import sparse_lemke
+from concio.solvers.stepping.active_pairs import ActivePairs
 from concio.solvers.stepping.problem import StepProblem, StepSolution
 from concio.solvers.stepping.settle_step import LinearStep, settle
 from concio.solvers.stepping.states import across_slip, halting, laws_of_step, read_states
@@ -37,22 +38,26 @@ class StepSolver:
         self.engine = engine
         self.factor: StepFactor | None = None
         self._linear: LinearStep | None = None
+        self._pairs: ActivePairs | None = None
         self.counts: dict[str, int] = {}
 
     def new_layout(self) -> None:
         """Forget the pattern: the rows meet other unknowns from now on."""
-        self.factor = self._linear = None
+        self.factor = self._linear = self._pairs = None
 
     def step_again(self, p: StepProblem, found: StepSolution) -> StepSolution:
         """Solve a step of which only the forces have changed a little since :meth:`step`, with the factors of then.
 
         Where the states or the slips have become others, the step is solved again.
         """
-        if self._linear is not None:
-            x, t, errors = self._linear.refined(p, found.x, found.t)
-            residual, _ = p.violation(t, errors)
+        before = self._pairs
+        pairs = self._pairs = ActivePairs.of(p, before)
+        if self._linear is not None and before is not None and before.pick is pairs.pick:
+            now = pairs.solution(found)
+            x, t, errors = self._linear.refined(pairs.part, now.x, now.t)
+            residual, _ = pairs.part.violation(t, errors)
             if residual < STEP_GOOD:
-                return StepSolution(x, t, found.states, residual, found.how, found.factorisations)
+                return pairs.of_all(replace(now, x=x, t=t, residual=residual))
         again = self.step(p, found.states, found.x, found.t)
         return replace(again, factorisations=found.factorisations + again.factorisations)
 
@@ -61,9 +66,24 @@ class StepSolver:
 
         In space the interior point ends where Newton's method in the states it found does the rest (``polish``).
         """
+        pairs = self._take(p)
+        found = self._step(pairs.part, pairs.states(states), x, pairs.forces(t))
+        if p.dim == 3 and found.how == "interior point" and found.residual >= STEP_SETTLED and polish:
+            again = pairs.of_all(found)
+            return self.step(p, again.states, again.x, again.t, polish=False)
+        return self._count(pairs.of_all(found))
+
+    def _take(self, p: StepProblem) -> ActivePairs:
+        """Return the active pairs of a problem, whose rows the factors to come have."""
         if self.factor is None:
             self.factor = StepFactor(p.matrix.sparse, p.columns, self.engine)
-        self.factor.take(p.matrix.sparse, p.values)
+        pairs = self._pairs = ActivePairs.of(p, self._pairs)
+        self.factor.take(p.matrix.sparse, pairs.part.values, pairs.pick)
+        return pairs
+
+    def _step(self, p: StepProblem, states: PairStates, x: Array, t: Array) -> StepSolution:
+        """Solve a step of active pairs, by each means in its turn."""
+        assert self.factor is not None
         factor, begun = self.factor, self.factor.count
         best: StepSolution | None = None
 
@@ -88,7 +108,7 @@ class StepSolver:
             residual, laws = p.violation(t1, errors)
             found = keep(x1, t1, states, residual, "same states" if not round_ else "active set")
             if residual < STEP_GOOD:
-                return self._count(found)
+                return found
             new = halting(read_states(p, x1, t1, errors), states)
             changed = int(((laws > STEP_SETTLED) & new.differ(states)).sum())
             seen.append(states)
@@ -100,22 +120,19 @@ class StepSolver:
                 found = keep(settled.x, settled.t, settled.states, settled.residual, "small problem")
                 if found.residual < STEP_SETTLED:
                     self._linear = settled.linear
-                    return self._count(found)
+                    return found
                 if any(not new.differ(s).any() for s in seen):
                     break
             states = new
-        found = self._fallback(p, best)
-        if p.dim == 3 and found.how == "interior point" and found.residual >= STEP_SETTLED and polish:
-            found = self.step(p, found.states, found.x, found.t, polish=False)
-        return self._count(found)
+        return self._fallback(p, best)
 
     def response(self, p: StepProblem, states: PairStates, f: Array) -> Array:
         """Return the change of x (N,) under a change f (N,) of the right-hand side, in given states."""
-        if self.factor is None:
-            self.factor = StepFactor(p.matrix.sparse, p.columns, self.engine)
-        self.factor.take(p.matrix.sparse, p.values)
-        turn = across_slip(p, np.zeros(len(f)), np.zeros((p.pairs, p.dim)))
-        self.factor.factorise(laws_of_step(p, states, turn).blocks())
+        pairs = self._take(p)
+        part = pairs.part
+        assert self.factor is not None
+        turn = across_slip(part, np.zeros(len(f)), np.zeros((part.pairs, p.dim)))
+        self.factor.factorise(laws_of_step(part, pairs.states(states), turn).blocks())
         return self.factor.solve(f)
 
     def _count(self, found: StepSolution) -> StepSolution:

@@ -73,7 +73,7 @@ class StepFactor:
         self._matrix_slot, self._diagonal_slot = pattern.slot[: coo.nnz], pattern.slot[coo.nnz : coo.nnz + n]
         slot = np.full(m * w * w, pattern.nnz, dtype=np.int64)
         slot[inside] = pattern.slot[coo.nnz + n :]
-        self._slot = slot.reshape(m, w * w)
+        self._slot = self._slots_now = slot.reshape(m, w * w)
         self.numeric: SmallInverse | OrderedFactor = SmallInverse(pattern) if n <= SMALL else OrderedFactor(pattern)
         self.D: Array | None = None
         self.diagonal: Springs | None = None
@@ -81,9 +81,13 @@ class StepFactor:
     _assembled: tuple[Array, Array] | None = None
     """Blocks D of the last matrix of these rows, and its entries."""
 
-    def take(self, matrix: sp.csr_array, values: Array) -> None:
-        """Take other entries of A, and other rows ``values`` (m, d, w), for the factors to come."""
+    def take(self, matrix: sp.csr_array, values: Array, pick: Array | None = None) -> None:
+        """Take other entries of A, and other rows ``values`` (m, d, w), for the factors to come.
+
+        Where the rows are those of some pairs of the layout alone, ``pick`` says of which.
+        """
         self._matrix, self._values, self._assembled = matrix, values, None
+        self._slots_now = self._slot if pick is None else self._slot[pick]
 
     @property
     def count(self) -> int:
@@ -118,7 +122,7 @@ class StepFactor:
         """Return the entries of C'DC of some pairs."""
         nnz, values = self.pattern.nnz, self._values[some]
         local = np.matmul(values.transpose(0, 2, 1), np.matmul(D[some], values))
-        found = np.bincount(self._slot[some].ravel(), weights=local.ravel(), minlength=nnz + 1)[:nnz]
+        found = np.bincount(self._slots_now[some].ravel(), weights=local.ravel(), minlength=nnz + 1)[:nnz]
         return np.asarray(found, dtype=float)
 
     def _of_matrix(self) -> Array:
