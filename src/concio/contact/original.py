@@ -282,14 +282,17 @@ class OriginalContacts:
         still = ~self.rigid & (disc.shape_of < 0)
         sides = ((-1.0, slots.body_a, slots.side_a, 0), (1.0, slots.body_b, slots.side_b, 3))
         nodes = 6
+        ways = normal, turned_left(normal)
         for sign, body, side, first in sides:
-            moving = self.rigid[body]
-            for k, way in enumerate((normal, turned_left(normal))):
-                arm = place - centre[body]
+            arm, moves = place - centre[body], sign * self.rigid[body]
+            still_moved = still[body] & (velocity[body].any(axis=1) | (spin[body] != 0.0))
+            v = velocity[body] + spin[body][:, None] * turned_left(arm) if still_moved.any() else None
+            for k, way in enumerate(ways):
                 moment = (arm[:, 0] * way[:, 1] - arm[:, 1] * way[:, 0]) / disc.reach[body]
-                values[:, k, first : first + 3] = sign * moving[:, None] * np.column_stack([way, moment])
-                v = velocity[body] + spin[body][:, None] * turned_left(arm)
-                imposed[:, k] += sign * still[body] * (v * way).sum(axis=1)
+                values[:, k, first : first + 2] = moves[:, None] * way
+                values[:, k, first + 2] = moves * moment
+                if v is not None:
+                    imposed[:, k] += sign * still_moved * (v * way).sum(axis=1)
                 if side is not None:
                     local = turned(way, -rotation[body])
                     entries = sign * side.weight[:, :, None] * local[:, None, :]

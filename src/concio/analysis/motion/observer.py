@@ -70,6 +70,7 @@ class Observer:
         self._joint = {key: k for k, key in enumerate(reference.drawn)} if plane else dict(reference.joint_numbers)
         self._reacting: tuple[Array, Array, Array, Array] | None = None
         self._known: tuple[Array, Array, Array] | None = None
+        self._among: tuple[Observer, Array] | None = None
         self.rest = reference.disc.centroids
         self.node_rest = frames.arm + self.rest[frames.body]
 
@@ -121,11 +122,13 @@ class Observer:
 
     def joints_of(self, part: Observer, structure: Structure) -> Array:
         """Return the numbers (f,) of the joints of a structure, which a part of these observes, among all."""
-        number = np.full(len(part.joints), -1)
-        sides = structure.features[0] if self.reference.disc.dim == 2 else structure.bodies
-        for (a, b), k in part._joint.items():
-            number[k] = self._joint[int(sides[a]), int(sides[b])]
-        return number
+        if part._among is None or part._among[0] is not self:
+            number = np.full(len(part.joints), -1)
+            sides = structure.features[0] if self.reference.disc.dim == 2 else structure.bodies
+            for (a, b), k in part._joint.items():
+                number[k] = self._joint[int(sides[a]), int(sides[b])]
+            part._among = self, number
+        return part._among[1]
 
     def rows(self, state: MotionState) -> Rows:
         """Return the contact rows where the bodies stand, in the present layout."""
