@@ -111,3 +111,6 @@ STEP_PAIRS = 120
 
 STEP_PROBLEMS = 12
 """Largest number of small problems that settle a step."""
+
+MOTION_STEPS = 20_000_000
+"""Largest number of steps of a motion: one block takes some hours for them, and their histories a gigabyte."""

@@ -122,3 +122,19 @@ def test_records_that_do_not_seem_to_belong_together_are_told(records, words):
 def test_records_that_belong_together_are_not():
     assert Ground((record(5e-3, 101, 1.0), record(5e-3, 101, 0.9), record(5e-3, 101, 0.8))).attention == ()
     assert Ground((record(5e-3, 101, 1.0), record(5e-3, 101, 0.9))).attention == ()
+
+
+def test_what_falls_past_everything_ends_a_motion_that_began_as_described():
+    model = blocks(((-0.1, -0.1, 0.5), (0.1, 0.1, 0.7)), floor=((1.0, 1.0, 0.0), (2.0, 2.0, 0.4)))
+    found = concio.dynamics(model, start="as described", duration=1e4, gravity=G)
+    assert found.ending is Ending.FALLEN
+    assert found.end.time == pytest.approx(np.sqrt(2.0 * found.reference.disc.size / G), abs=2e-3)
+    assert found.verdict.status == "fallen"
+    assert "'b0' has fallen by" in found.verdict.answer
+    assert "below everything in the model" in found.verdict.answer
+
+
+def test_a_motion_of_more_steps_than_can_be_kept_is_refused():
+    model = blocks(((-0.1, -0.1, 0.0), (0.1, 0.1, 0.2)))
+    with pytest.raises(concio.InputError, match=r"a motion of 1e\+09 s has 5e\+11 steps of 0.002 s"):
+        concio.dynamics(model, duration=1e9)

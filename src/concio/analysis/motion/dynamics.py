@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from concio.analysis.entry_point import entry_point
-from concio.analysis.motion.dynamics_asked import check_base, check_masses, positive, step_asked, thrown
+from concio.analysis.motion.dynamics_asked import check_base, check_length, check_masses, positive, step_asked, thrown
 from concio.analysis.motion.dynamics_result import DynamicsResult, Ending
 from concio.analysis.motion.ground import Ground, Motion
 from concio.analysis.motion.history import Recorder
@@ -119,8 +119,9 @@ def dynamics(
     points : sequence of ControlPoint
         Points whose positions are kept at every step.
     stop_overturned, stop_at_rest : bool
-        Whether to stop when a block has turned by 60 degrees from where it was described or lost the support on which
-        it stood, or when nothing moves any more after the ground motion: by default where no duration is given.
+        Whether to stop when a block has turned by 60 degrees from where it was described, lost the support on which
+        it stood, or fallen below everything there is, or when nothing moves any more after the ground motion: by
+        default where no duration is given.
     engine : {"superlu", "pardiso"}, optional
         What factorises linear systems; by default that of the model.
     progress : callable, optional
@@ -157,6 +158,7 @@ def dynamics(
         raise InputError(msg, hint=hint)
     shown = stated or ground.duration
     step = step_asked(step, ground, shown)
+    check_length(shown, step)
     stop_at_rest = stated is None if stop_at_rest is None else stop_at_rest
     check_base(reference, base, turning=ground.turning)
     scheme = Scheme(theta, restitution, mass_damping, stiffness_damping, brittle)
@@ -334,9 +336,12 @@ class _Run:
         """Return how a motion ends in which a block has fallen, None where none has; note the first ones."""
         turned = [words for m in self.movers for words in m.watch.overturned(m.state)]
         sunk = [words for m in self.movers for words in m.watch.sunk(m.state)] if self.falls else []
-        self.fallen = self.fallen or turned or sunk
+        lost = [words for m in self.movers for words in m.watch.lost(m.state)]
+        self.fallen = self.fallen or turned or sunk or lost
         if turned:
             return Ending.OVERTURNED
+        if lost:
+            return Ending.FALLEN
         return Ending.FALLEN if sunk and (self.stands is not False or self.stated is None) else None
 
     def _keep(self, rows: Sequence[Row]) -> None:

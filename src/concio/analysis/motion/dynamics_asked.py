@@ -12,6 +12,7 @@ from concio.analysis.motion.state import MotionState
 from concio.contact.reference import Reference
 from concio.errors import InputError
 from concio.kinematics.rigid import motions, swept
+from concio.problem.limits_of_work import MOTION_STEPS
 
 STEP = 2e-3
 """Step where none is given and no record is finer [s]."""
@@ -35,6 +36,13 @@ def step_asked(step: float | None, ground: Ground, duration: float) -> float:
         msg = f"the step of {step:g} s is larger than that of the record, {ground.sample:g} s"
         raise InputError(msg, hint=f"take at most {ground.sample:g} s: what happens between samples would be lost")
     return min(step, duration)
+
+
+def check_length(duration: float, step: float) -> None:
+    """Refuse a motion of more steps than can be computed and kept."""
+    if duration > MOTION_STEPS * step:
+        msg = f"a motion of {duration:g} s has {duration / step:.2g} steps of {step:g} s"
+        raise InputError(msg, where="duration", hint=f"at most {MOTION_STEPS:,}: take a shorter one, or larger steps")
 
 
 def check_masses(reference: Reference) -> None:

@@ -20,6 +20,7 @@ from concio.analysis.motion.scheme import Scheme
 from concio.analysis.motion.state import MotionState
 from concio.analysis.motion.statics import Statics
 from concio.contact.reference import Reference
+from concio.fem.discretisation import FIXED
 from concio.problem.contact_problem import Engine
 
 Array = np.ndarray
@@ -86,6 +87,16 @@ class Watch:
         depth = self.origin[:, -1] - state.centre[:, -1]
         lost = free[depth[free] > SUNK * self.reference.surface.width[free]]
         return [f"'{self._name(b)}' has sunk by {depth[b]:.3g} m below where it stood" for b in lost.tolist()]
+
+    def lost(self, state: MotionState) -> list[str]:
+        """Return the blocks that have fallen by more than the size of all that there is, a phrase each."""
+        depth = self.origin[:, -1] - state.centre[:, -1]
+        fixed = self.reference.disc.shape_of == FIXED
+        ground = float(depth[fixed].max(initial=0.0))  # a base that moves
+        free = self.reference.free
+        below = free[depth[free] - ground > self.reference.disc.size]
+        return [f"'{self._name(b)}' has fallen by {depth[b]:.3g} m, below everything in the model"
+                for b in below.tolist()]  # fmt: skip
 
     def passed(self, state: MotionState) -> list[str]:
         """Return the blocks that have passed their own equilibrium, a phrase each, in the layout of the last step.
