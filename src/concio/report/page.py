@@ -121,14 +121,15 @@ def page(
     """Return a report of steps that share one assembly: what was found in HTML, the view, figures, ``more``, tables."""
     last = steps[-1]
     space = last.model.dim == 3
+    view = "space_view" if space else "view"
     shown = {**view_of(steps, [text_in(label, language) for label in labels]), **script_words(language)}
     data = json.dumps(shown, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
     parts = {
         "TITLE": escape(last.model.title or "Result"),
         "NAME": _title(last),
         "STYLE": resource("report.css") + (resource("space_view.css") if space else ""),
-        "SCRIPT": resource("space_view.js" if space else "view.js") + resource("names.js") + resource("print.js"),
-        "VIEW": resource("space_view.html" if space else "view.html"),
+        "SCRIPT": "".join(resource(f"{name}.js") for name in ("view_base", view, "names", "print")),
+        "VIEW": resource(f"{view}.html"),
         "VERDICT": verdict,
         "MODEL": _model(last),
         "FIGURES": figures,

@@ -1,25 +1,6 @@
-"use strict";
 /* The view in space of a report: WebGL, typed arrays, no library. Lengths in m, forces in kN. */
 (() => {
-  const $ = (id) => document.getElementById(id);
-  const complain = (text) => { const box = $("errors"); box.hidden = false; box.textContent += text + "\n"; };
-  window.addEventListener("error", (e) => { if (!/ResizeObserver/.test(e.message)) complain(`${e.message} (line ${e.lineno})`); });
-
-  const TYPES = { f4: Float32Array, f8: Float64Array, i4: Int32Array, u1: Uint8Array };
-  const unpack = (packed) => {
-    const text = atob(packed.data), bytes = new Uint8Array(text.length);
-    for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);
-    return new TYPES[packed.type](bytes.buffer);
-  };
-  const unpacked = (record) => {
-    const found = {};
-    for (const [key, value] of Object.entries(record)) found[key] = value && value.data !== undefined ? unpack(value) : value;
-    return found;
-  };
-
-  const data = JSON.parse($("data").textContent);
-  const said = data.said || {}, say = (word) => said[word] ?? word; /* another language than English */
-  const written = (number) => (data.said ? number.replace(".", ",") : number);
+  const { $, unpack, unpacked, data, say, written } = base;
   const look = data.look, bodies = unpacked(data.bodies), pieces = unpacked(data.pieces), joints = unpacked(data.joints), ties = unpacked(data.ties);
   const steps = data.steps.map(() => null);
   const stepAt = (k) => (steps[k] ??= stepOf(unpacked(data.steps[k])));

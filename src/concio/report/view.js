@@ -1,25 +1,6 @@
-"use strict";
 /* The interactive view of a report: one canvas, typed arrays, no library. Lengths in m, forces in kN. */
 (() => {
-  const $ = (id) => document.getElementById(id);
-  const complain = (text) => { const box = $("errors"); box.hidden = false; box.textContent += text + "\n"; };
-  window.addEventListener("error", (e) => complain(`${e.message} (line ${e.lineno})`));
-
-  const TYPES = { f4: Float32Array, f8: Float64Array, i4: Int32Array, u1: Uint8Array };
-  const unpack = (packed) => {
-    const text = atob(packed.data), bytes = new Uint8Array(text.length);
-    for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);
-    return new TYPES[packed.type](bytes.buffer);
-  };
-  const unpacked = (record) => {
-    const found = {};
-    for (const [key, value] of Object.entries(record)) found[key] = value && value.data !== undefined ? unpack(value) : value;
-    return found;
-  };
-
-  const data = JSON.parse($("data").textContent);
-  const said = data.said || {}, say = (word) => said[word] ?? word; /* another language than English */
-  const written = (number) => (data.said ? number.replace(".", ",") : number);
+  const { $, unpacked, data, say, written } = base;
   const look = data.look, bodies = unpacked(data.bodies), pieces = unpacked(data.pieces), joints = unpacked(data.joints);
   const steps = data.steps.map(() => null);
   const count = bodies.name.length, pieceCount = pieces.pair.length;
@@ -409,7 +390,6 @@
   resize();
   /* in the next frame: changing the height while the observer reports would make it report again at once */
   new ResizeObserver(() => requestAnimationFrame(() => { if (canvas.clientWidth !== width) resize(); })).observe(canvas);
-  if (data.left_out) complain(`${say("Steps left out of this view to keep the file small")}: ${data.left_out}`);
   window.concioNames = { names: bodies.name, choose: (body) => choose({ body }), node: canvas };
   window.concio = { view, data, bodies, pieces, joints, stepAt, setStep, setScale, choose, pick, paint, X, Y, middle };
 })();

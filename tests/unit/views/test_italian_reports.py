@@ -125,7 +125,7 @@ def test_both_languages_have_the_same_gaps_and_numbers(english: str, said: str) 
 def test_every_word_of_the_scripts_has_its_italian_and_no_other() -> None:
     scripts = "".join(
         (files("concio.report") / name).read_text(encoding="utf-8")
-        for name in ("view.js", "space_view.js", "motion.js", "motion_space.js")
+        for name in ("view_base.js", "view.js", "space_view.js", "motion.js", "motion_space.js")
     )
     quoted = set(re.findall(r'"([^"\n]*)"', scripts))
     said = set(re.findall(r'say\("([^"]*)"\)', scripts)) | set(re.findall(r'row\("([^"]*)"', scripts))

@@ -204,3 +204,11 @@ def test_loads_are_drawn_where_and_as_they_act() -> None:
     assert {"2 kN/m2", "3 kN/m2", "4 kN"} <= {text.get_text() for text in ax.texts}
     front = plot_space_model(replace(tower(), loads=loads), view="front", names=False)
     assert len([a for a in front.collections if isinstance(a, Quiver)]) == 1  # the others come straight at the eye
+
+
+def test_both_views_say_how_many_steps_they_leave_out() -> None:
+    column = concio.column(width=0.5, height=1.0, blocks=2, block="rigid", unit_weight=20.0)
+    for model in (column, concio.extrude(column, thickness=0.5)):
+        page = report_html(concio.solve(model), figures=False)
+        assert page.count("if (data.left_out) complain(") == 1
+        assert '"left_out":0' in page
