@@ -14,6 +14,7 @@ import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as spl
 
+from concio.analysis.inner_forces import inner_forces
 from concio.analysis.lent_compliance import lent_assembly
 from concio.errors import InputError
 from concio.problem.contact_problem import ContactProblem
@@ -71,9 +72,14 @@ class LinearisedState:
     def of(cls, result: Result) -> LinearisedState:
         """Return that of a certified step, with the states that its forces and gaps show."""
         problem, solution = yielding_problem(result)
-        law, u = problem.laws, np.asarray(solution.displacement)
-        t_n = np.asarray(solution.normal_force)
         t_t = np.asarray(solution.friction_force).reshape(problem.pairs, problem.dim - 1)
+        state = cls._read(problem, np.asarray(solution.displacement), np.asarray(solution.normal_force), t_t)
+        return state._inside() if state.about.any() else state
+
+    @classmethod
+    def _read(cls, problem: ContactProblem, u: Array, t_n: Array, t_t: Array) -> LinearisedState:
+        """Return the states that forces and gaps show."""
+        law = problem.laws
         slip = _slip(problem, u, t_t)
         moved = np.linalg.norm(slip, axis=1)
         gap = problem.gap + problem.C_n @ u + law.normal_compliance * t_n - law.dilatancy * moved
@@ -90,6 +96,16 @@ class LinearisedState:
         radius = problem.cone.linear_strength(t_n) > ABOUT * force
         about = (held < ABOUT) | (closed & (edge < ABOUT)) | (radius & (stuck < ABOUT))
         return cls(problem, u, t_n, t_t, closed, crushed, sticks & closed, about)
+
+    def _inside(self) -> LinearisedState:
+        """Return this state with forces that equilibrium leaves open moved away from where pairs change."""
+        (way, size), law = self.way, self.problem.laws
+        gap = self.problem.gap + self.problem.C_n @ self.u + law.normal_compliance * self.t_n - law.dilatancy * size
+        touches = (np.abs(gap) < ABOUT * self.far) & ~self.crushed
+        moves = np.where((size > ABOUT * self.far)[:, None], way, 0.0)
+        inner = inner_forces(self.problem, np.column_stack([self.t_n, self.t_t]), touches, moves)
+        other = self._read(self.problem, self.u, inner[:, 0], inner[:, 1:])
+        return other if other.about.sum() < self.about.sum() else self
 
     def with_states_of(self, other: Result) -> LinearisedState:
         """Return this answer with the states of the pairs that are about to change as another answer has them."""
