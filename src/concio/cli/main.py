@@ -5,8 +5,10 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable, Iterable, Sequence
+from typing import Any
 
 import typer
+from typer.core import TyperCommand
 
 from concio.cli import memory, outcome
 from concio.cli.assess_command import assess
@@ -60,6 +62,24 @@ def _common(
     pass
 
 
+class Command(TyperCommand):
+    """A command whose messages about arguments have no word of the library that checks them."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Parse the arguments.
+
+        Raises
+        ------
+        typer.BadParameter
+            One of them is wrong.
+        """
+        try:
+            return super().parse_args(ctx, args)
+        except typer.BadParameter as error:
+            error.message = error.message.removeprefix("Value error, ")
+            raise
+
+
 def command_line(commands: Iterable[Callable[..., object]]) -> typer.Typer:
     """Return the command line with these commands."""
     line = typer.Typer(
@@ -74,7 +94,7 @@ def command_line(commands: Iterable[Callable[..., object]]) -> typer.Typer:
     )
     line.callback()(_common)
     for command in commands:
-        line.command(command.__name__, epilog=EXIT_CODES)(command)
+        line.command(command.__name__, cls=Command, epilog=EXIT_CODES)(command)
     return line
 
 

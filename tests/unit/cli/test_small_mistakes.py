@@ -74,3 +74,10 @@ def test_what_is_missing_is_named_with_what_to_add(
     code, _, err = run(asked[0], path, *asked[1:])
     assert code == 2
     assert said in " ".join(err.split())
+
+
+def test_a_kind_that_there_is_not_is_told_without_words_of_a_library() -> None:
+    code, _, told = run("new", "facade")
+    assert code == 2
+    assert "'facade' is not one of 'panel', 'wall'" in " ".join(told.replace("│", " ").split())
+    assert "Value error" not in told
