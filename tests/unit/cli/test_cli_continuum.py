@@ -6,9 +6,9 @@ import json
 
 import numpy as np
 import pytest
-from tests.commands import run
 
 import concio
+from commands import run
 from concio.cli.halved import halved_file
 
 WALL = """
