@@ -6,6 +6,9 @@ vertical strips between extrados and a level road; the axle a strip of length b,
 against each voussoir soil presses horizontally, at the middle of its extrados, between nothing and k gamma z dy.
 Abutments are as high as the extrados at the springings and carry what reaches them. The largest axle that forces in
 equilibrium carry. Nothing of concio is used.
+
+Joints that crush carry a rectangular block of stress at one edge: abs(M) <= N t / 2 - N^2 / (2 f b). That set is
+convex; the programme has it as tangents, which lie closest together where N is small.
 """
 
 from __future__ import annotations
@@ -14,16 +17,21 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.optimize import linprog
-from scipy.sparse import lil_matrix
+from scipy.sparse import csr_matrix, lil_matrix
 
 Array = np.ndarray
 FINE = 400
 """Strips of each voussoir in which weights and spread are integrated."""
+TANGENTS = 200
+"""Tangents of the set of forces that a crushing joint carries."""
 
 
 @dataclass(frozen=True)
 class Arch:
-    """A segmental arch with fill; lengths in m, weights in kN/m3, ``friction`` None where nothing slides."""
+    """A segmental arch with fill; lengths in m, weights in kN/m3.
+
+    ``friction`` is None where nothing slides, ``strength`` [kN/m2] where nothing crushes.
+    """
 
     span: float
     rise: float
@@ -36,6 +44,7 @@ class Arch:
     width: float
     passive: float
     friction: float | None = None
+    strength: float | None = None
 
     def axle(self, x: float) -> float:
         """Return the largest axle load at x from the left springing [kN]."""
@@ -93,16 +102,34 @@ class Arch:
             centroid = centre[0] + arm * np.sin(middle[i])
             right[3 * i + 2] = (centroid - pole[0]) * own + ((soil[i] * at[i]).sum() - pole[0] * weight)
         bounds = [(0.0, None), (None, None)] * (joints // 2) + [(0.0, 1.0)] * n + [(0.0, None)]
-        limits, most_allowed = None, None
-        if self.friction is not None:
-            limits = lil_matrix((joints, size))
-            for k in range(joints // 2):
-                for s, sign in enumerate((1.0, -1.0)):
-                    limits[2 * k + s, 2 * k + 1] = sign
-                    limits[2 * k + s, 2 * k] = -self.friction
-            limits, most_allowed = limits.tocsr(), np.zeros(joints)
+        limits, most_allowed = self._limits(joints, size)
         cost = np.zeros(size)
         cost[-1] = -1.0
         found = linprog(cost, limits, most_allowed, balance.tocsr(), right, bounds, method="highs")
         assert found.status == 0, found.message
         return float(found.x[-1])
+
+    def _limits(self, joints: int, size: int) -> tuple[csr_matrix | None, Array | None]:
+        """Return what bounds the forces of joints that slide or crush, as rows and the most that each is."""
+        rows: list[dict[int, float]] = []
+        most: list[float] = []
+        if self.friction is not None:
+            for k in range(joints // 2):
+                for sign in (1.0, -1.0):
+                    rows.append({2 * k + 1: sign, 2 * k: -self.friction})
+                    most.append(0.0)
+        if self.strength is not None:
+            full = self.strength * self.ring * self.width
+            for joint in range(0, joints, 4):
+                for at in np.linspace(0.0, 1.0, TANGENTS) ** 2:
+                    for inner, outer in ((joint, joint + 2), (joint + 2, joint)):
+                        # (outer - inner) t / 2 <= N t / 2 - (2 N0 N - N0^2) / (2 f b), over t / 2 and N0 = at f b t
+                        rows.append({outer: 2 * at, inner: -2.0 + 2 * at})
+                        most.append(at**2 * full)
+        if not rows:
+            return None, None
+        found = lil_matrix((len(rows), size))
+        for k, row in enumerate(rows):
+            for column, value in row.items():
+                found[k, column] = value
+        return found.tocsr(), np.array(most)
