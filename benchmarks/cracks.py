@@ -175,11 +175,13 @@ def kind_of(case: Case, found: Diagnosis) -> str:
     true = set(np.flatnonzero(case.truth).tolist())
     sets = [set(c.chosen) for c in found.causes]
     if not sets:
-        return "none"
+        return "found, a measurement doubted" if true in [set(d.cause.chosen) for d in found.doubts] else "none"
     if true in sets:
         return "found" if len(sets) == 1 else "ambiguous"
     if any(s < true for s in sets):
-        return "simpler" if len(sets) == 1 else "ambiguous, simpler"
+        better = [set(a.cause.chosen) for a in found.additions if a.cause is not None]
+        word = "simpler, the true one clearly better" if true in better else "simpler"
+        return word if len(sets) == 1 else f"ambiguous, {word}"
     return "missed"
 
 
@@ -208,7 +210,8 @@ def main() -> None:
         kind = kind_of(case, found)
         kinds[case.family, kind] += 1
         true = set(np.flatnonzero(case.truth).tolist())
-        causes = [*found.causes, *(d.cause for d in found.doubts)]
+        added = [a.cause for a in found.additions if a.cause is not None]
+        causes = [*found.causes, *(d.cause for d in found.doubts), *added]
         doubts = [f"{d.measurement} {d.mistake}" for d in found.doubts]
         if case.wrong:
             named.append(case.wrong in [d.measurement for d in found.doubts])

@@ -107,13 +107,11 @@ def main() -> None:
         told = ", ".join(f"{c.name} {1e3 * s:g}" for c, s in zip(candidates, truth.tolist(), strict=True) if s)
         print(f"{name}: {len(model.bodies) - sum(b.kind == 'fixed' for b in model.bodies)} stones, "
               f"{len(found.forward.assembly.pairs)} contact pairs; true: {told} (mm, mrad)")  # fmt: skip
-        for cause in found.causes:
+        added = [a.cause for a in found.additions if a.cause is not None]
+        for word, cause in [*(("cause", c) for c in found.causes), *(("clearly better", c) for c in added)]:
             parts = zip(cause.names, 1e3 * cause.motion, 1e3 * cause.low, 1e3 * cause.high, strict=True)
-            print("  cause: " + "; ".join(f"{n} {s:.2f} ({a:.2f} to {b:.2f})" for n, s, a, b in parts)
+            print(f"  {word}: " + "; ".join(f"{n} {s:.2f} ({a:.2f} to {b:.2f})" for n, s, a, b in parts)
                   + f"; misfit {cause.misfit:.1f}")  # fmt: skip
-        for a in found.additions:
-            parts = zip(a.names, 1e3 * a.motions, strict=True)
-            print("  clearly better: " + "; ".join(f"{n} {s:.2f}" for n, s in parts) + f"; misfit {a.misfit:.1f}")
         print(f"  {found.verdict.status}; {len(found.trials)} choices, {found.forward.runs} paths of "
               f"{found.forward.steps} steps, {seconds:.0f} processor seconds", flush=True)  # fmt: skip
 

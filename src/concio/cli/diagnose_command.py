@@ -68,24 +68,27 @@ def diagnose(
     if json:
         print_json(told)
     elif written:
-        say(f"  written      {out}: {', '.join(written)}")
+        say(f"  {words_of('diagnosis_words', spoken)['written']:<13}{out}: {', '.join(written)}")
     return found.verdict.exit_code
 
 
 def diagnose_lines(found: Diagnosis, language: str = "en") -> list[str]:
     """Return what a diagnosis found, in words: the verdict, then every measurement beside what is predicted."""
-    from concio.display import number
+    from concio.report.diagnosis_page import DiagnosisReport
     from concio.verdict.diagnosis_verdict import diagnosis_verdict
+    from concio.verdict.verdict import WIDTH
 
-    verdict = diagnosis_verdict(found, language)
-    units = found.model.report
+    page = DiagnosisReport(found, language, {})
+    verdict = diagnosis_verdict(found, language, write=page.n)
     lines = [found.model.title] if found.model.title else []
-    lines += [verdict.headline, verdict.sentence, *verdict.lines(units, most=MOST_LINES)]
-    lines.append(f"  proof        {verdict.proof}")
+    lines += [verdict.headline, verdict.sentence]
+    for line in (*verdict.lines(found.model.report, indent="", most=MOST_LINES), f"{'proof':<{WIDTH}}{verdict.proof}"):
+        head, entry = line[:WIDTH].strip().replace(" ", "_"), line[WIDTH:]
+        lines.append(f"  {page.words[head]:<{WIDTH}}{page.told(entry)}")
     best = found.best
     if best is not None:
         for m, p, r in zip(found.measurements, best.predicted, best.residual, strict=True):
             size = max(abs(m.value), abs(float(p)), m.error)
-            values = [units.text(m.quantity, m.rounded(float(v)), 3, size=size) for v in (m.value, p)]
-            lines.append(f"  {m.name:<12} {values[0]:>10} | {values[1]:<10} {number(float(r), 2)}")
+            values = [page.quantity(m.quantity, m.rounded(float(v)), size) for v in (m.value, p)]
+            lines.append(f"  {m.name:<12} {values[0]:>10} | {values[1]:<10} {page.n(float(r), 2)}")
     return lines

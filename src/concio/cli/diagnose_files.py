@@ -36,8 +36,7 @@ def write_diagnosis(
         "measured [m or rad]": np.array([m.value for m in found.measurements]),
         "error [m or rad]": np.array([m.error for m in found.measurements]),
     }
-    shown = [*found.causes, *(d.cause for d in found.doubts)] or [best]
-    for k, cause in enumerate(shown, 1):
+    for k, cause in enumerate(found.shown, 1):
         table[f"predicted by cause {k} [m or rad]"] = cause.predicted
         table[f"residual of cause {k} [errors]"] = cause.residual
     write_csv(table, place / "measurements.csv")

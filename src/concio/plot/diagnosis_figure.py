@@ -199,12 +199,12 @@ def _words(language: str) -> dict[str, str]:
 
 
 def _causes(found: Diagnosis) -> list[Cause]:
-    """Return the causes that are drawn beside each other, those in doubt after the others."""
-    return [*found.causes, *(d.cause for d in found.doubts)][:MOST_CAUSES] or [_cause(found, 0)]
+    """Return the causes that are drawn beside each other, those in doubt and what is less simple after the others."""
+    return list(found.shown[:MOST_CAUSES]) or [_cause(found, 0)]
 
 
 def _cause(found: Diagnosis, number: int) -> Cause:
-    shown = [*found.causes, *(d.cause for d in found.doubts)] or ([found.nearest] if found.nearest else [])
+    shown = found.shown
     if not 0 <= number < len(shown):
         msg = f"there is no cause {number}: there are {len(shown)}"
         raise InputError(msg, hint="counted from 0; the measurements may need no cause")

@@ -65,9 +65,10 @@ class DiagnosisReport:
         self.found, self.language, self.head = found, language, head
         self.words = words_of("diagnosis_words", language)
         self.units = found.model.report
-        within = [(c, self.say("cause", n=str(k))) for k, c in enumerate(found.causes, 1)]
-        within += [(d.cause, self.say("doubt", name=d.measurement)) for d in found.doubts]
-        self.shown = within or ([(found.nearest, self.words["nearest"])] if found.nearest else [])
+        titles = [self.say("cause", n=str(k)) for k in range(1, len(found.causes) + 1)]
+        titles += [self.say("doubt", name=d.measurement) for d in found.doubts]
+        titles += [self.words["addition"] for a in found.additions if a.cause is not None]
+        self.shown = list(zip(found.shown, titles or [self.words["nearest"]], strict=False))
 
     def n(self, value: float, digits: int = 4) -> str:
         """Return a number as the language writes it."""
@@ -109,7 +110,8 @@ class DiagnosisReport:
         """Return the verdict in the language of the report."""
         told, w = diagnosis_verdict(self.found, self.language, write=self.n), self.words
         facts: list[tuple[str, Sequence[str]]] = [
-            ("asked", (told.question.asked,)), ("acts", told.question.loads(self.units)), ("limits", told.limits),
+            ("asked", (told.question.asked,)), ("acts", told.question.loads(self.units)),
+            ("assumed", told.question.assumptions), ("limits", told.limits),
             ("not_checked", told.unchecked), ("attention", told.attention), ("next_steps", told.next_steps),
         ]  # fmt: skip
         facts = [(key, [self.told(line) for line in lines]) for key, lines in facts]
@@ -128,7 +130,7 @@ class DiagnosisReport:
             parts.append(f"<h3>{escape(title)}</h3>{self.motions(cause)}")
             if self.found.model.dim == 2 and k < MOST_DRAWN:
                 axes = plot_cracks(self.found, cause=k, language=self.language, write=self.n)
-                parts.append(figure_html(axes, f"cracks-{k + 1}", self.say("figure_cracks", n=str(k + 1))))
+                parts.append(figure_html(axes, f"cracks-{k + 1}", self.say("figure_cracks", title=title)))
         if self.shown:
             readings, causes = (plot(self.found, language=self.language) for plot in (plot_readings, plot_causes))
             parts.append(figure_html(readings, "readings", self.words["figure_readings"]))
@@ -165,7 +167,7 @@ class DiagnosisReport:
         """Return where to measure next."""
         between = ", " if self.language != "it" else "; "
         rows = [
-            [self.words[p.kind], f"{p.joint[0]} | {p.joint[1]}", between.join(self.n(v) for v in p.at),
+            [self.words[p.kind], " | ".join(p.joint), between.join(self.n(v) for v in p.at),
              "; ".join(self.quantity("motion", v, p.spread) for v in p.predicted), self.quantity("motion", p.spread)]
             for p in self.found.places
             if p.gain > TELLING

@@ -87,6 +87,8 @@ class _Words:
             return Outcome.UNDECIDED, "several_causes"
         if found.causes and found.doubts:
             return Outcome.UNDECIDED, "several_causes"
+        if found.causes and found.forced:
+            return Outcome.INCOMPLETE, "forced_together"
         if found.causes and not found.causes[0].determined:
             return Outcome.INCOMPLETE, "not_determined"
         if found.causes and found.lost:
@@ -119,7 +121,7 @@ class _Words:
         keys = {
             "one_cause": "headline_one", "no_motion": "headline_rest", "several_causes": "headline_several",
             "not_determined": "headline_loose", "not_all_followed": "headline_partly",
-            "too_coarse": "headline_coarse",
+            "too_coarse": "headline_coarse", "forced_together": "headline_forced",
             "measurement_in_doubt": "headline_doubt", "not_followed": "headline_lost", "no_cause": "headline_none",
         }  # fmt: skip
         names = ", ".join(dict.fromkeys(f"'{d.measurement}'" for d in found.doubts))
@@ -213,11 +215,8 @@ class _Words:
         """Return the best further motion, with which the simplest cause fits clearly better."""
         told = []
         for a in self.found.additions[:1]:
-            parts = [
-                self.say("unseen_part", name=n, motion=self.quantity(self.kind(n), s))
-                for n, s in zip(a.names, a.motions.tolist(), strict=True)
-            ]
-            told.append(self.say("addition", motions=self.words["and"].join(parts), misfit=a.misfit))
+            assert a.cause is not None
+            told.append(self.say("addition", motions=self.cause(a.cause), misfit=a.misfit))
         return tuple(told)
 
     def stands(self) -> tuple[str, ...]:
@@ -253,7 +252,8 @@ class _Words:
     def place(self, place: Place, several: bool) -> str:
         """Return a place with what is predicted there."""
         at = ("; " if self.comma else ", ").join(self.write(v, 4) for v in place.at)
-        name = self.say(f"place_{place.kind}", joint=f"{place.joint[0]} | {place.joint[1]}", at=at)
+        axis = "xyz"[max(range(len(place.direction)), key=lambda i: abs(place.direction[i]))] if place.direction else ""
+        name = self.say(f"place_{place.kind}", joint=" | ".join(place.joint), at=at, axis=axis)
         if not several:
             return self.say("spread", place=name, spread=self.quantity("motion", place.spread))
         size = max(abs(v) for v in place.predicted)
@@ -263,10 +263,9 @@ class _Words:
     def proof(self) -> str:
         """Return which equations were evaluated."""
         found = self.found
-        shown = [*found.causes, *(d.cause for d in found.doubts)] or ([found.nearest] if found.nearest else [])
-        if not shown:
+        if not found.shown:
             return ""
-        worst = max(c.certificate for c in shown)
+        worst = max(c.certificate for c in found.shown)
         told = self.say("proof", worst=self.short(worst), allowed=f"{CERTIFIED:.0e}", tried=len(found.trials),
                         runs=found.forward.runs)  # fmt: skip
         future = found.future
@@ -280,11 +279,13 @@ class _Words:
         """Return what limits the answer."""
         found = self.found
         told = [*joints_not_made(found.assembly.detection), self.words["together"], self.words["small"]]
+        if found.lent:
+            told.append(self.say("lent", size=self.write(found.lent, 3)))
         looked = max((len(t.chosen) for t in found.trials), default=0)
         if looked < len(found.candidates):
             told.append(self.say("sparse", size=looked))
         if found.left:
-            told.append(self.say("left", count=found.left, far=f"{FAR:g}"))
+            told.append(self.say("left" if found.left > 1 else "left_one", count=found.left, far=f"{FAR:g}"))
         if not found.causes:
             told.append(self.words["local"])
         for unseen in found.unseen:
@@ -304,7 +305,8 @@ class _Words:
         found = self.found
         told = []
         if found.lost:
-            told.append(self.say("unchecked_lost", count=len(found.lost)))
+            key = "unchecked_lost" if len(found.lost) > 1 else "unchecked_lost_one"
+            told.append(self.say(key, count=len(found.lost)))
         if found.best is not None and found.best.chosen and (found.future is None or not found.future.large):
             told.append(self.words["unchecked_large"])
         return tuple(told)
@@ -313,6 +315,9 @@ class _Words:
         """Return what asks for attention in the fit itself."""
         found = self.found
         told = []
+        if found.forced:
+            closing = self.quantity("motion", found.closing)
+            told.append(self.say("forced", closing=closing, change=self.write(found.closing / found.width, 2)))
         if found.refinement > COARSE:
             told.append(self.say("coarse", change=found.refinement))
         if found.orders > NOTABLE:
@@ -324,6 +329,6 @@ class _Words:
         keys = {
             "several_causes": ("step_measure", "step_watch"), "not_determined": ("step_measure", "step_watch"),
             "measurement_in_doubt": ("step_doubt", "step_watch"), "no_cause": ("step_candidates",),
-            "not_followed": ("step_candidates",),
+            "not_followed": ("step_candidates",), "forced_together": ("step_forced", "step_watch"),
         }  # fmt: skip
         return tuple(self.words[k] for k in keys.get(status, ("step_watch",)))

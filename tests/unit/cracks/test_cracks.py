@@ -105,6 +105,11 @@ def test_a_small_motion_beside_a_large_one_is_told_where_it_fits_clearly_better(
     first = found.additions[0]
     assert first.name == "left turns"
     np.testing.assert_allclose(first.motions, [0.01, -3e-3], rtol=1e-2)
+    np.testing.assert_array_equal(first.cause.motion, first.motions)
+    assert (first.cause.low < [0.01, -3e-3]).all()
+    assert (first.cause.high > [0.01, -3e-3]).all()
+    assert found.shown == (*found.causes, first.cause)
+    assert [a.cause for a in found.additions[1:]] == [None] * (len(found.additions) - 1)
     assert found.causes[0].misfit - first.misfit > 3.84
     for language, words in (("en", "clearly better"), ("it", "nettamente migliore")):
         assert words in diagnosis_verdict(found, language).sentence
@@ -280,12 +285,95 @@ def test_a_load_that_grew_is_a_candidate() -> None:
     assert "factor" in found.verdict.sentence
 
 
+def test_a_cause_that_forces_rigid_blocks_together_is_told_as_such() -> None:
+    pressed = dataclasses.replace(GIVES, low=-np.inf)
+    asked = [
+        Measurement("span", "distance", 1e-3, body="left abutment", at=(-SPAN / 2, 0.0), other="right abutment",
+                    to=(SPAN / 2, 0.0)),
+        Measurement("ground", "level", 1e-3, body="left abutment", at=(-0.8, 0.0), direction=(-1.0, 0.0)),
+        Measurement("sinks", "level", 1e-3, body="v01", at=(-SPAN / 2, 0.0)),
+    ]  # fmt: skip
+    values = predicted(flat_arch(), asked, [pressed], [-0.02])
+    np.testing.assert_allclose(values[:2], -0.02, rtol=1e-6)
+    found = diagnosed(flat_arch(), with_values(asked, values), [pressed])
+    assert [c.names for c in found.causes] == [("left gives way",)]
+    # seven joints of the chain share what the abutment takes away, and nothing else makes room for it
+    assert 0.02 / 7 / 2 < found.closing < 0.02
+    assert (found.verdict.status, found.verdict.exit_code) == ("forced_together", 4)
+    for language, words in (("en", "forced together"), ("it", "forzati insieme")):
+        assert any(words in line for line in diagnosis_verdict(found, language).attention)
+    spread = diagnosed(flat_arch(), spread_cracks(0.01), [pressed])
+    assert (spread.verdict.status, spread.forced) == ("one_cause", False)
+    assert spread.closing < 1e-5
+    assert any("were given a compliance" in line for line in spread.verdict.limits)
+
+
+def test_joints_with_a_stiffness_are_lent_nothing() -> None:
+    law = concio.JointLaw(2.0, normal_stiffness=1e7, tangential_stiffness=4e6)
+    soft = dataclasses.replace(flat_arch(), laws=dict.fromkeys(flat_arch().laws, law))
+    found = diagnosed(soft, spread_cracks(0.01), [GIVES])
+    assert (found.lent, found.closing) == (0.0, 0.0)
+    assert not any("were given a compliance" in line for line in found.verdict.limits)
+
+
+def test_places_that_were_measured_are_not_to_be_measured_next() -> None:
+    found = diagnosed(flat_arch(), spread_cracks(0.01), [GIVES, SINKS, TURNS])
+    assert found.verdict.status == "one_cause"
+    told = [(p.kind, {*p.joint}, p.at) for p in found.places]
+    assert told
+    for m in spread_cracks(0.01)[:2]:
+        assert not [at for kind, joint, at in told
+                    if kind == "opening" and joint == {*m.joint} and np.allclose(at, m.at, atol=1e-3)]  # fmt: skip
+
+
+def test_a_measurement_in_doubt_is_to_be_measured_again() -> None:
+    cracks = spread_cracks(0.01)
+    cracks[1] = dataclasses.replace(cracks[1], value=10 * cracks[1].value)
+    found = diagnosed(flat_arch(), cracks, [GIVES], most=1)
+    assert [d.measurement for d in found.doubts] == ["springer"]
+    assert any(p.kind == "opening" and {*p.joint} == {"left abutment", "v01"} for p in found.places)
+
+
+def test_what_is_measured_next_tells_what_these_measurements_do_not() -> None:
+    turns = Candidate("right turns", body="right abutment", rotation=1.0)
+    error = 0.4e-3
+    cracks = spread_cracks(0.01, error)[:4]
+    found = diagnosed(flat_arch(), cracks, [GIVES, turns])
+    assert [c.names for c in found.causes] == [("left gives way",)]
+    assert any("right turns" in u.names for u in found.unseen)
+    first = found.places[0]
+    assert {*first.joint} == {"right abutment", "v06"}
+    assert first.spread > 5 * error
+    more = Measurement("told", "opening", error, first.predicted[0], first.joint, at=first.at)
+    again = diagnosed(flat_arch(), [*cracks, more], [GIVES, turns])
+    assert not again.unseen
+    assert max((p.spread for p in again.places), default=0.0) < 0.2 * first.spread
+
+
 def test_the_next_place_is_where_two_causes_differ_most() -> None:
     both = diagnosed(flat_arch(), spread_cracks(0.01)[:3], [GIVES, OTHER], most=1)
     first = both.places[0]
     told = np.ptp([c.motions for c in both.causes], axis=0)
     assert told.min() > 0.009
+    # every joint opens by the same, whichever abutment moved: only how far something has moved tells them apart
+    assert (first.kind, first.direction) == ("displacement", (1.0, 0.0))
+    assert first.spread == pytest.approx(0.01, rel=5e-3)
     assert first.spread == pytest.approx(np.ptp(first.predicted))
+    assert "displacement of" in both.verdict.sentence
+    assert "spostamento di" in diagnosis_verdict(both, "it").sentence
+    body = next(b for b in flat_arch().bodies if b.name == first.joint[0])
+    more = Measurement("told", "level", ERROR, first.predicted[0], body=body.name, at=body.centroid, direction=(1, 0))
+    one = diagnosed(flat_arch(), [*spread_cracks(0.01)[:3], more], [GIVES, OTHER], most=1)
+    assert [c.names for c in one.causes] == [both.causes[0].names]
+
+
+def test_the_next_openings_are_those_in_which_two_causes_differ_most() -> None:
+    both = diagnosed(flat_arch(), spread_cracks(0.01)[1:3], [GIVES, TURNS], most=1)
+    assert len(both.causes) == 2
+    first = both.places[0]
+    assert first.kind in {"opening", "slip"}
+    assert first.spread == pytest.approx(np.ptp(first.predicted))
+    assert first.spread > ERROR
     assert all(a.spread >= b.spread for a, b in zip(both.places, both.places[1:], strict=False))
 
 
@@ -322,6 +410,8 @@ GOOD = {"name": "m", "kind": "opening", "error": 1e-4, "joint": ("v01", "v02")}
     [
         ({"kind": "crack"}, "unknown kind"),
         ({"error": 0.0}, "must be positive"),
+        ({"error": 0.5}, "give the unit, such as '0.5 mm'"),
+        ({"kind": "tilt", "joint": (), "body": "v01", "error": 0.1}, "a bare number is in rad"),
         ({"value": float("nan")}, "not a number"),
         ({"value": -1e-3}, "less than nothing"),
         ({"kind": "closed", "value": 1e-3}, "closed joint has no value"),

@@ -3,17 +3,18 @@
 The simplest causes are sought, and what contains one is not tried. A small motion beside a large one is then passed
 over where the errors of all measurements together leave room for it. So each further candidate is tested by itself: of
 a linear model the misfit falls by chi2 with one degree of freedom where the motion is not there. The chance of naming
-any that is not there is that of the confidence, shared among the candidates (Bonferroni).
+any that is not there is that of the confidence, shared among the candidates (Bonferroni). The best is a cause
+like any other, with intervals of its motions and what it predicts.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from concio.analysis.cracks.cause import Cause
+from concio.analysis.cracks.cause import Cause, cause_of
 from concio.analysis.cracks.fit import Fit, Fitter
 from concio.analysis.cracks.search import allowed
 
@@ -36,6 +37,8 @@ class Addition:
         Candidates that move in all.
     motions : (c,) array
         How far each of them then moves.
+    cause : Cause or None
+        All of it with intervals, of the best.
     """
 
     name: str
@@ -43,6 +46,7 @@ class Addition:
     misfit: float
     names: tuple[str, ...]
     motions: Array
+    cause: Cause | None = None
 
 
 def additions_of(fitter: Fitter, cause: Cause, names: Sequence[str], confidence: float) -> tuple[Addition, ...]:
@@ -64,20 +68,25 @@ def additions_of(fitter: Fitter, cause: Cause, names: Sequence[str], confidence:
     clear = allowed(1, 1.0 - (1.0 - confidence) / len(others))
     here = Fit(cause.chosen, cause.motions, cause.prediction, cause.residual, cause.slope, kept)
     slopes, _ = fitter.derivatives(here, others, central=False)
-    found = []
+    found: list[tuple[Addition, Fit]] = []
     for c, slope in zip(others, slopes.T, strict=True):
-        own = [*cause.chosen, c]
-        order = np.argsort(own)
+        both = [*cause.chosen, c]
+        order = np.argsort(both)
         J = np.column_stack([cause.slope, slope])[:, order]
-        chosen = tuple(int(own[k]) for k in order)
+        chosen = tuple(int(both[k]) for k in order)
         if cause.misfit - _least(J[kept] * fitter.scale[list(chosen)], cause.residual[kept]) <= clear:
             continue
         begin = Fit(chosen, cause.motions, cause.prediction, cause.residual, J, kept)
         fit = fitter.fit(chosen, allowed=max(cause.misfit - clear, 1e-9), kept=kept, begin=begin)
         if fit is not None and cause.misfit - fit.misfit > clear:
             moved = fit.motions[list(chosen)]
-            found.append(Addition(names[c], float(fit.motions[c]), fit.misfit, tuple(names[i] for i in chosen), moved))
-    return tuple(sorted(found, key=lambda a: a.misfit))
+            own = tuple(names[i] for i in chosen)
+            found.append((Addition(names[c], float(fit.motions[c]), fit.misfit, own, moved), fit))
+    found.sort(key=lambda pair: pair[1].misfit)
+    told = [addition for addition, _ in found]
+    if found:
+        told[0] = replace(told[0], cause=cause_of(fitter, found[0][1], tuple(names), confidence))
+    return tuple(told)
 
 
 def _least(J: Array, residual: Array) -> float:

@@ -13,15 +13,15 @@ from concio.analysis.cracks.additions import additions_of
 from concio.analysis.cracks.cause import Cause, cause_of
 from concio.analysis.cracks.diagnosis import Diagnosis
 from concio.analysis.cracks.fit import FAR, Fit, Fitter
-from concio.analysis.cracks.forward import Forward
+from concio.analysis.cracks.forward import Forward, Prediction
 from concio.analysis.cracks.future import Future, future_of
-from concio.analysis.cracks.measurement import Candidate, Measurement
+from concio.analysis.cracks.measurement import AT_A_JOINT, Candidate, Measurement
 from concio.analysis.cracks.mistakes import Doubt, doubts_of
 from concio.analysis.cracks.moved import moved_model
 from concio.analysis.cracks.observed import readings
-from concio.analysis.cracks.places import next_places
+from concio.analysis.cracks.places import Place, next_places
 from concio.analysis.cracks.search import Found, Trial, allowed, search
-from concio.analysis.cracks.undetermined import unseen_of
+from concio.analysis.cracks.undetermined import Unseen, rivals_of, unseen_of
 from concio.analysis.entry_point import entry_point
 from concio.arguments import strict
 from concio.contact.assembly import as_assembly
@@ -153,10 +153,10 @@ def diagnose(
     width = float(np.median([m.error for m in given[0] if m.quantity == "motion"] or [scale.min() / LEAST]))
     names = [c.name for c in given[1]]
     additions = additions_of(fitter, causes[0], names, confidence) if causes else ()
+    unseen = unseen_of(fitter, best, names) if best is not None else ()
     return Diagnosis(
-        model, *given, found, forward, causes, doubts, searched.trials, nearest,
-        unseen_of(fitter, best, names) if best is not None else (), next_places(forward, left, width),
-        case.future(best, large), case.orders(best), coarse, confidence, most,
+        model, *given, found, forward, causes, doubts, searched.trials, nearest, unseen,
+        case.places(left, unseen, width), case.future(best, large), case.orders(best), coarse, confidence, most,
         clock.perf_counter() - begun, additions,
     )  # fmt: skip
 
@@ -210,6 +210,21 @@ class _Case:
         """Return the fit with the least misfit."""
         fits = [t.fit for t in searched.trials if t.fit is not None]
         return self.cause(min(fits, key=lambda f: f.misfit)) if fits else None
+
+    def places(self, causes: Sequence[Cause], unseen: Sequence[Unseen], width: float) -> tuple[Place, ...]:
+        """Return where to measure next: of places that were measured, those that a cause leaves out alone."""
+        forward = self.fitter.forward
+        out = {i for c in causes for i in c.left_out}
+        known = [
+            ("slip" if m.kind == "slip" else "opening", r)
+            for i, (m, r) in enumerate(zip(self.measurements, forward.readings, strict=True))
+            if m.kind in AT_A_JOINT and i not in out
+        ]
+        rivals: tuple[Prediction, ...] = ()
+        if len(causes) == 1:
+            names, limit = [c.name for c in self.candidates], allowed(causes[0].freedom, self.confidence)
+            rivals = rivals_of(self.fitter, causes[0], unseen, names, max(limit, causes[0].misfit))
+        return next_places(forward, causes, width, known=known, rivals=rivals)
 
     def future(self, best: Cause | None, large: bool) -> Future | None:
         """Return what happens to the structure if the cause goes on."""

@@ -29,6 +29,9 @@ if TYPE_CHECKING:
 
 Array = np.ndarray
 
+FORCED = 1.0
+"""Errors by which joints may close by the compliance that was added to them."""
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Diagnosis(Shown):
@@ -106,9 +109,36 @@ class Diagnosis(Shown):
         return self.doubts[0].cause if self.doubts else self.nearest
 
     @property
+    def shown(self) -> tuple[Cause, ...]:
+        """Causes drawn: within the errors, with a measurement left out, less simple but better; or the nearest."""
+        better = (a.cause for a in self.additions if a.cause is not None)
+        return (*self.causes, *(d.cause for d in self.doubts), *better) or tuple(filter(None, (self.nearest,)))
+
+    @property
     def lost(self) -> tuple[Trial, ...]:
         """Choices of which no motion was reached."""
         return tuple(t for t in self.trials if t.fit is None)
+
+    @property
+    def width(self) -> float:
+        """Error of the measurements of lengths [m], their median; of tilts alone that of points at the model's size."""
+        errors = [m.error for m in self.measurements if m.quantity == "motion"]
+        return float(np.median(errors or [m.error * self.model.size for m in self.measurements]))
+
+    @property
+    def lent(self) -> float:
+        """Compliance added to hard joints between rigid blocks [m/kN, a pair of mean area]; 0 for none."""
+        return self.forward.loaded.assembly.lent_compliance
+
+    @cached_property
+    def closing(self) -> float:
+        """How far that compliance lets a joint close at most, of all causes [m]."""
+        return max((self.forward.closing(c.prediction) for c in self.shown), default=0.0)
+
+    @property
+    def forced(self) -> bool:
+        """Whether a cause forces rigid blocks together: joints close by more than an error of what was measured."""
+        return self.closing > FORCED * self.width
 
     @property
     def left(self) -> int:
@@ -154,16 +184,18 @@ class Diagnosis(Shown):
                 {
                     "name": a.name, "motion": a.motion, "misfit": a.misfit,
                     "motions": dict(zip(a.names, a.motions.tolist(), strict=True)),
+                    "cause": None if a.cause is None else _told(a.cause, names),
                 }
                 for a in self.additions
             ],
             "measure_next": [
                 {
                     "kind": p.kind, "joint": list(p.joint), "at": list(p.at), "predicted": list(p.predicted),
-                    "spread": p.spread, "gain": p.gain,
+                    "spread": p.spread, "gain": p.gain, "direction": list(p.direction),
                 }
                 for p in self.places
             ],
+            "closing": self.closing,
             "future": None if self.future is None else _plain(vars(self.future)),
             "order_of_motions": self.orders,
             "refinement": self.refinement,

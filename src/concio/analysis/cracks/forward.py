@@ -155,6 +155,18 @@ class Forward:
         values = self.read(self.readings, u, last.factors) if reached else np.full(len(self.readings), np.nan)
         return Prediction(np.asarray(ends[-1], dtype=float), values, u, dict(last.factors), path)
 
+    def closing(self, prediction: Prediction) -> float:
+        """Return how far the compliance added to hard joints lets one close at most in a state [m].
+
+        Blocks that can move aside close them by next to nothing. Where they are forced together it is what makes room
+        for the motion, and the forces between them belong to the compliance.
+        """
+        lent, hard = prediction.path.assembly, self.assembly
+        if not lent.lent_compliance:
+            return 0.0
+        added = lent.laws.normal_compliance - hard.laws.normal_compliance
+        return float((added * prediction.path.steps[-1].state.normal_force).max(initial=0.0))
+
     def read(self, found: Sequence[Reading], displacement: Array, factors: Mapping[str, float]) -> Array:
         """Return what some readings (n,) give of a state, from the loaded structure where they count from there."""
         start = self.loaded.steps[-1]

@@ -23,6 +23,9 @@ ANGLES = ("tilt",)
 LARGEST = 1.0
 """No measurement is larger than this [m or rad]: it is in another unit."""
 
+LOOSEST = 0.1
+"""An error as large as this is in another unit, or tells nothing [m or rad]."""
+
 
 @strict_class
 @dataclass(frozen=True)
@@ -94,6 +97,10 @@ class Measurement:
         if not (math.isfinite(self.error) and self.error > 0):
             msg = f"error = {self.error!r} must be positive: it is the standard deviation of the measurement"
             raise InputError(msg, where=where, hint="a ruler reads to about 0.5 mm, a crack gauge to 0.1 mm")
+        if self.error >= LOOSEST:
+            unit = "rad" if self.kind in ANGLES else "m"
+            msg = f"error = {self.error:g} {unit} is more than any crack or tilt of a structure that stands"
+            raise InputError(msg, where=where, hint=f"a bare number is in {unit}: give the unit, such as '0.5 mm'")
         if not math.isfinite(self.value):
             msg = f"value = {self.value!r} is not a finite number"
             raise InputError(msg, where=where, hint="leave out what was not measured")

@@ -82,6 +82,17 @@ def joint_reading(assembly: Assembly, joint: Joint, point: Array, along: Array) 
     return Reading(b[0] - a[0], moved, point, along, False, (joint.a, joint.b))
 
 
+def body_reading(assembly: Assembly, b: int, along: Array) -> Reading:
+    """Return the displacement of the middle of a body along a direction, from the loaded structure."""
+    disc = assembly.disc
+    middle = np.asarray(disc.centroids[b], dtype=float)
+    if disc.shape_of[b] not in (FIXED, RIGID):
+        nodes = disc.nodes(b)
+        middle = nodes[int(np.argmin(np.linalg.norm(nodes - middle, axis=1)))]
+    row, moved = _moving(assembly, b, middle, along)
+    return Reading(row, moved, middle, along, True, (b, -1))
+
+
 def corners(joint: Joint) -> Array:
     """Return the corners (k, d) of a joint: its two ends in the plane, those of its polygon in space [m]."""
     return np.array([joint.start, joint.end]) if isinstance(joint, Interface) else joint.polygon

@@ -9,6 +9,7 @@ import numpy as np
 
 from concio.analysis.cracks.cause import Cause
 from concio.analysis.cracks.fit import Fit, Fitter
+from concio.analysis.cracks.forward import Prediction
 
 Array = np.ndarray
 
@@ -35,6 +36,41 @@ class Unseen:
     names: tuple[str, ...]
     motions: tuple[float, ...]
     change: float
+
+
+def rivals_of(
+    fitter: Fitter, cause: Cause, unseen: Sequence[Unseen], names: Sequence[str], allowed: float
+) -> tuple[Prediction, ...]:
+    """Return the states beside a cause to which combinations that the measurements leave open lead.
+
+    Those within the bounds of the motions are followed, forwards and backwards; states whose misfit is above what is
+    allowed are left out: the measurements tell them from the cause.
+
+    Parameters
+    ----------
+    fitter : Fitter
+    cause : Cause
+    unseen : sequence of Unseen
+    names : sequence of str
+        Of all candidates.
+    allowed : float
+        Misfit within the errors.
+    """
+    numbers = {name: c for c, name in enumerate(names)}
+    kept = np.ones(len(cause.residual), dtype=bool)
+    kept[list(cause.left_out)] = False
+    found = []
+    for combination in unseen:
+        step = np.zeros(len(names))
+        step[[numbers[name] for name in combination.names]] = combination.motions
+        for sign in (1.0, -1.0):
+            motions = cause.motions + sign * step
+            if not ((motions >= fitter.low) & (motions <= fitter.high)).all():
+                continue
+            there = fitter.forward.predict(motions)
+            if there.reached and float((fitter.residual(there)[kept] ** 2).sum()) <= allowed:
+                found.append(there)
+    return tuple(found)
 
 
 def unseen_of(fitter: Fitter, cause: Cause, names: Sequence[str]) -> tuple[Unseen, ...]:
