@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -93,6 +94,11 @@ class Vehicle:
         Where the axles come from.
     assumed : str
         What the source left open and was assumed.
+    unfavourable : bool
+        Whether its stretches of uniform load stand only where they are unfavourable, as codes prescribe: a search over
+        positions looks for that part of the road at each.
+    loaded : sequence of (float, float) or None
+        From where to where on the road its stretches of uniform load stand [m]; None is wherever they reach.
 
     Examples
     --------
@@ -115,6 +121,8 @@ class Vehicle:
     group: str = "live"
     source: str = ""
     assumed: str = ""
+    unfavourable: bool = False
+    loaded: tuple[tuple[float, float], ...] | None = None
 
     def __post_init__(self) -> None:
         where = f"vehicle '{self.name}'"
@@ -126,6 +134,8 @@ class Vehicle:
             object.__setattr__(self, name, positive(name, getattr(self, name), "length", where))
         if self.position is not None:
             object.__setattr__(self, "position", quantity(self.position, "length", where=f"{where}, position"))
+        if self.loaded is not None:
+            object.__setattr__(self, "loaded", tuple(_part(p, where) for p in self.loaded))
         if not 1.0 <= self.dynamic <= 3.0:
             msg = f"dynamic = {self.dynamic:g} must lie between 1 and 3"
             raise InputError(msg, where=where, hint="1.8 means 80 % more")
@@ -164,7 +174,33 @@ class Vehicle:
         [10.0, 13.2]
         """
         sign = -1.0 if (direction or self.direction) == "left" else 1.0
-        return tuple(
-            (position + sign * a.at, self.footprint if a.length is None else a.length,
-             self.dynamic * self.factor * a.load, a.length is not None and a.length >= STRETCH) for a in self.axles
-        )  # fmt: skip
+        found: list[tuple[float, float, float, bool]] = []
+        for a in self.axles:
+            x, load = position + sign * a.at, self.dynamic * self.factor * a.load
+            if a.length is None or a.length < STRETCH:
+                found.append((x, self.footprint if a.length is None else a.length, load, False))
+                continue
+            whole = x - 0.5 * a.length, x + 0.5 * a.length
+            for low, high in (whole,) if self.loaded is None else self.loaded:
+                begin, end = max(low, whole[0]), min(high, whole[1])
+                if end > begin:
+                    found.append((0.5 * (begin + end), end - begin, load * (end - begin) / a.length, True))
+        return tuple(found)
+
+
+def _part(given: Sequence[float], where: str) -> tuple[float, float]:
+    """Return a part of the road.
+
+    Raises
+    ------
+    InputError
+        It does not go from less to more.
+    """
+    if len(given) != 2:
+        msg = f"loaded has {list(given)}, which is not a part of the road"
+        raise InputError(msg, where=where, hint="write [from, to] in m")
+    low, high = (quantity(v, "length", where=f"{where}, loaded") for v in given)
+    if not low < high:
+        msg = f"loaded goes from {low:g} to {high:g} m"
+        raise InputError(msg, where=where, hint="write [from, to], the smaller x first")
+    return low, high

@@ -27,7 +27,7 @@ def odd_crossing(model: Model) -> list[str]:
     if model.fill is not None:
         found += _fill(model.fill)
     if model.vehicle is not None:
-        found += [*_axles(model.vehicle), *_width(model, model.vehicle)]
+        found += [*_axles(model.vehicle), *_width(model, model.vehicle), *_everywhere(model.vehicle)]
     return found
 
 
@@ -67,6 +67,16 @@ def _axles(vehicle: Vehicle) -> list[str]:
     if heaviest > TONNES or heaviest == 1.0:  # a unit load is to be multiplied
         return []
     return [f"{told}if tonnes were meant, write '{heaviest:g} tf', which is {heaviest * GRAVITY:.4g} kN"]
+
+
+def _everywhere(vehicle: Vehicle) -> list[str]:
+    """Return a sentence where load that counts where it is unfavourable stands on all of the road."""
+    if vehicle.position is None or not vehicle.unfavourable or vehicle.loaded is not None or not vehicle.uniform:
+        return []
+    return [
+        f"the uniform load of vehicle '{vehicle.name}' stands on the whole road here, and may help the bridge: "
+        "'concio bridge' finds where it is unfavourable, and loaded in [vehicle] puts it there"
+    ]
 
 
 def _width(model: Model, vehicle: Vehicle) -> list[str]:

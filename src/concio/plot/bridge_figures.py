@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from concio.analysis.bridges.bridge_result import BridgeResult
     from concio.analysis.bridges.sweep import Standing
     from concio.analysis.bridges.variants import Change
+    from concio.model.model import Model
 
 Array = np.ndarray
 
@@ -98,7 +100,7 @@ def plot_standing(
     style.draw_lines(ax, pieces.side("middle", scale)[state == PairState.SLIP], style.SLIP, zorder=3.5)
     handles = [style.patch(style.FILL_OPEN, words["opens"]), style.handle(style.SLIP, words["slides"])]
     handles.append(_thrust(ax, result, words))
-    draw_vehicle(ax, found.model, one.position, one.direction)
+    draw_vehicle(ax, under(found, one), one.position, one.direction)
     text = words["mechanism"].format(factor=_n(one.multiplier, words), x=_n(one.position, words)) if title else ""
     style.dress(ax, box, text, words["moved"] if title else "", units=found.model.report)
     if title:
@@ -141,10 +143,13 @@ def _n(value: float, words: Mapping[str, str], digits: int = 4) -> str:
     return number(value, digits).replace(",", "\u2009").replace(".", words.get("decimal", "."))
 
 
+def under(found: BridgeResult, standing: Standing) -> Model:
+    """Return the model with uniform load where it stands at a position."""
+    return replace(found.model, vehicle=replace(found.vehicle, loaded=standing.loaded))
+
+
 def state_of(found: BridgeResult, standing: Standing) -> Result:
     """Return forces and mechanism of the bound at a position as a result that figures can draw."""
-    from dataclasses import replace
-
     assembly, limit = found.assembly, standing.limit
     motion = limit.mechanism
     if motion is not None:

@@ -9,6 +9,7 @@ from concio.model.crossing import STRETCH, Vehicle
 from concio.model.fill import Fill
 from concio.model.materials import Elastic, JointLaw
 from concio.model.road.spread import spread_rule
+from concio.verdict.bridge_verdict import loaded_words
 
 if TYPE_CHECKING:
     from concio.report.bridge_page import BridgeReport
@@ -99,6 +100,8 @@ def _vehicle(page: BridgeReport, vehicle: Vehicle) -> list[tuple[str, str]]:
         else:
             told.append(page.say("axle_at", load=page.unit("force", a.load), at=at))
     rows = [("vehicle", vehicle.name), ("axles", "; ".join(told))]
+    if vehicle.loaded is not None and vehicle.uniform:
+        rows.append(("loaded", loaded_words(vehicle.loaded, page.said)))
     rows += [(key, getattr(vehicle, key)) for key in ("source", "assumed") if getattr(vehicle, key)]
     return [*rows, ("dynamic", f"{page.n(vehicle.dynamic)}; {page.n(vehicle.factor)}")]
 

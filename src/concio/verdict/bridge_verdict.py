@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -65,11 +66,25 @@ def _loads(vehicle: Vehicle, w: Words) -> str:
     """Return the loads of a vehicle in words: its axles, and what is spread along the road."""
     times = vehicle.dynamic * vehicle.factor
     uniform = w.unit("line load", times * max(vehicle.uniform, default=0.0))
+    if vehicle.unfavourable:
+        return _of_both(vehicle, uniform, w) + w.say("unfavourable")
+    return _of_both(vehicle, uniform, w)
+
+
+def _of_both(vehicle: Vehicle, uniform: str, w: Words) -> str:
+    """Return axles and uniform load in words."""
+    times = vehicle.dynamic * vehicle.factor
     if not vehicle.points:
         return w.say("loads_uniform", uniform=uniform)
     axle = w.unit("force", times * vehicle.heaviest.load)
     total = w.unit("force", times * sum(a.load for a in vehicle.points))
     return w.say("loads_both" if vehicle.uniform else "loads_axles", axle=axle, total=total, uniform=uniform)
+
+
+def loaded_words(loaded: Sequence[tuple[float, float]], w: Words) -> str:
+    """Return the parts of the road on which uniform load stands."""
+    told = [w.say("part", low=w.unit("length", low), high=w.unit("length", high)) for low, high in loaded]
+    return ", ".join(told) or w.say("no_part")
 
 
 def heaviest_words(vehicle: Vehicle, multiplier: float, w: Words) -> tuple[str, str]:
@@ -241,6 +256,8 @@ def _limits(found: BridgeResult, w: Words) -> tuple[str, ...]:
     beside = worst.elsewhere + times * sum(a.load for a in found.vehicle.points) - sum(on_road)
     if beside > 1e-6 * found.vehicle.total:
         told.append(w.say("elsewhere", load=w.unit("force", beside, 4)))
+    if found.vehicle.unfavourable and worst.loaded is not None:
+        told.append(w.say("loaded", parts=loaded_words(worst.loaded, w)))
     told.append(w.say("plane"))
     if found.model.fill is not None and found.model.fill.spandrels:
         told.append(w.say("spandrels"))
@@ -257,7 +274,8 @@ def _unchecked(found: BridgeResult, w: Words) -> tuple[str, ...]:
         told.append(w.say("unchecked_crushing"))
     told.append(w.say("unchecked_long"))
     one_way = {s.direction for s in found.standings}
-    there, back = (sorted(found.vehicle.footprints(0.0, way)) for way in ("right", "left"))
+    vehicle = replace(found.vehicle, loaded=None)
+    there, back = (sorted(vehicle.footprints(0.0, way)) for way in ("right", "left"))
     if len(one_way) == 1 and not np.allclose(there, back):
         told.append(w.say("unchecked_both"))
     if found.service.status is not Status.SOLVED and found.service.status not in PROVEN_FAILURES:

@@ -16,6 +16,10 @@ ENGLISH: Mapping[str, str] = {
     "loads_axles": "heaviest axle {axle}, {total} in all",
     "loads_both": "heaviest axle {axle}, {total} in axles, and a uniform load of up to {uniform} along the road",
     "loads_uniform": "a uniform load of up to {uniform} along the road, no axles",
+    "unfavourable": ", where it is unfavourable",
+    "loaded": "the uniform load stands on the part of the road that is least favourable of those that the search met, "
+    "at the worst position on {parts}",
+    "part": "x = {low} to {high}", "no_part": "none of it",
     "an_axle": "a heaviest axle of {axle}",
     "a_load": "a uniform load of {uniform}",
     "head_holds": "The vehicle is carried at every position that was looked at.",
@@ -72,6 +76,10 @@ ITALIAN: Mapping[str, str] = {
     "loads_axles": "asse più pesante {axle}, {total} in tutto",
     "loads_both": "asse più pesante {axle}, {total} negli assi, e un carico uniforme fino a {uniform} lungo la strada",
     "loads_uniform": "un carico uniforme fino a {uniform} lungo la strada, senza assi",
+    "unfavourable": ", dove è sfavorevole",
+    "loaded": "il carico uniforme sta sulla parte di strada meno favorevole tra quelle incontrate nella ricerca, nella "
+    "posizione peggiore su {parts}",
+    "part": "x = {low} a {high}", "no_part": "nessuna parte",
     "an_axle": "un asse più pesante di {axle}",
     "a_load": "un carico uniforme di {uniform}",
     "head_holds": "Il veicolo è sostenuto in ogni posizione esaminata.",

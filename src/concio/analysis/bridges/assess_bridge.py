@@ -188,7 +188,8 @@ def _refuse_what_does_not_stand(sweep: Sweep) -> None:
 def _placed(model: Model, standing: Standing) -> Model:
     assert model.vehicle is not None
     way: Literal["left", "right"] = "left" if standing.direction == "left" else "right"
-    return with_vehicle(model, replace(model.vehicle, position=standing.position, direction=way), whole=False)
+    vehicle = replace(model.vehicle, position=standing.position, direction=way, loaded=standing.loaded)
+    return with_vehicle(model, vehicle, whole=False)
 
 
 def _worst_of(model: Model, step: float | None, fine: float) -> Standing | None:
@@ -217,8 +218,8 @@ def _coulomb(
     for k, (x, way) in enumerate(places):
         if progress is not None:
             progress(Progress("Coulomb states", k, float("nan"), f"{way}, x = {x:.3g} m"))
-        live, _, _ = sweep.load(x, way)
         standing = sweep.at(x, way)
+        live, _, _ = sweep.load(x, way, None if standing is None else standing.loaded)
         if standing is not None and standing.limit.checked and standing.limit.upper < required:
             found.append(Coulomb(x, way, Status.NO_EQUILIBRIUM))
             continue

@@ -200,7 +200,8 @@ class BridgeResult(Shown):
             "required": self.required,
             "load_factor": {"design": _finite(self.design), "associated": _finite(worst.multiplier),
                             "checked": worst.limit.checked},
-            "worst": {"position": worst.position, "direction": worst.direction, "on_masonry": worst.on_masonry},
+            "worst": {"position": worst.position, "direction": worst.direction, "on_masonry": worst.on_masonry,
+                      "loaded": None if worst.loaded is None else [list(part) for part in worst.loaded]},
             "axle": _finite(self.axle),
             "permissible_axle": _finite(self.permissible_axle),
             "brackets": [

@@ -2,21 +2,27 @@
 
 The dead load is assembled once; each position gives a vector of loads, and one linear programme
 (:mod:`concio.solvers.statics.associated_limit`) the associated multiplier with forces and a mechanism that prove it.
+Uniform load that counts where it is unfavourable takes several programmes a position
+(:mod:`concio.analysis.bridges.unfavourable`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
+from concio.analysis.bridges.unfavourable import Part, least_favourable
 from concio.contact.assembly import Assembly, assemble
 from concio.contact.loads import place_forces
 from concio.errors import InputError, SolverError
-from concio.model.crossing import STRETCH
+from concio.model.crossing import STRETCH, Vehicle
 from concio.model.model import Model
 from concio.model.road.earth import ground_of, spread_under, without_vehicle
+from concio.model.road.spread import SpreadLoad, along_the_road, spread, spread_rule
 from concio.model.road.surface import Road, Surface
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import Progress, ProgressCallback
@@ -52,6 +58,8 @@ class Standing:
         Load that reaches blocks that can move [kN].
     elsewhere : float
         Load that reaches fixed blocks [kN]; what stands beyond the road is in neither.
+    loaded : tuple of (float, float) or None
+        From where to where on the road uniform load stands [m]; None is wherever the vehicle has it.
     """
 
     position: float
@@ -59,6 +67,7 @@ class Standing:
     limit: LimitLoad
     on_masonry: float
     elsewhere: float
+    loaded: Part | None = None
 
     @property
     def multiplier(self) -> float:
@@ -92,9 +101,21 @@ class Sweep:
         self.assembly = assemble(self.bare)
         self.dead = self.assembly.problem()
 
-    def load(self, position: float, direction: str) -> tuple[Array, float, float]:
-        """Return the load (N,) of the vehicle at a position, what reaches the masonry, and what does not [kN]."""
-        found = spread_under(self.model, position, direction, self.ground, whole=False)
+    def load(self, position: float, direction: str, loaded: Part | None = None) -> tuple[Array, float, float]:
+        """Return the load (N,) of the vehicle at a position, what reaches the masonry, and what does not [kN].
+
+        Parameters
+        ----------
+        position : float
+            [m].
+        direction : {"right", "left"}
+        loaded : Part, optional
+            The part of the road on which its uniform load stands; by default that of the vehicle.
+        """
+        vehicle = self.vehicle if loaded is None else replace(self.vehicle, loaded=loaded)
+        return self._carried(spread_under(self.model, position, direction, self.ground, whole=False, vehicle=vehicle))
+
+    def _carried(self, found: SpreadLoad) -> tuple[Array, float, float]:
         body = self.ground[0].body[found.piece]
         free = np.array([self.bare.bodies[b].kind != "fixed" for b in body.tolist()], dtype=bool)
         forces = np.column_stack([np.zeros(int(free.sum())), -found.force[free]])
@@ -106,28 +127,61 @@ class Sweep:
         """Return the limit load at a position; None where nothing of the vehicle reaches the masonry."""
         key = (round(float(position), 9), direction)
         if key not in self.known:
-            live, own, rest = self.load(*key)
-            self.known[key] = Standing(*key, associated_limit(self.dead, live), own, rest) if own > 0 else None
+            searched = self.vehicle.unfavourable and self.vehicle.uniform
+            self.known[key] = self._unfavourable(*key) if searched else self._under(*key, self.vehicle.loaded)
         return self.known[key]
+
+    def _under(self, position: float, direction: str, loaded: Part | None) -> Standing | None:
+        """Return the limit load with uniform load on a part of the road."""
+        live, own, rest = self.load(position, direction, loaded)
+        if not own > 0:
+            return None
+        return Standing(position, direction, associated_limit(self.dead, live), own, rest, loaded)
+
+    def _unfavourable(self, position: float, direction: str) -> Standing | None:
+        """Return the limit load with uniform load where it is least favourable."""
+        pieces, loads = self.pieces
+        low, high = float(pieces[0, 0]), float(pieces[-1, 1])
+        middle = min(max(position, low), high)
+        parts: list[Part] = [(), ((low, middle),), ((middle, high),), ((low, high),)]
+        near = [s for s in self.known.values() if s is not None and s.direction == direction and s.loaded is not None]
+        parts += [s.loaded for s in sorted(near, key=lambda s: abs(s.position - position))[:1] if s.loaded is not None]
+        starts = [tuple(p for p in part if p[1] > p[0]) for part in parts]
+        return least_favourable(starts, lambda part: self._under(position, direction, part), pieces, loads)
+
+    @cached_property
+    def pieces(self) -> tuple[Array, Array]:
+        """Pieces of the road (E, 2) that uniform load covers as a whole or not [m], and the load of each (E, N)."""
+        line = self.ground[1].line
+        low, high = float(line[0, 0]), float(line[-1, 0])
+        ends = np.linspace(low, high, max(2, int(np.ceil((high - low) / self.step()))) + 1)
+        rule = spread_rule(self.model.fill.spread)  # type: ignore[union-attr]
+        loads = [self._carried(spread(rule, *self.ground, tuple(along_the_road(a, b, b - a, 0.5 * (low + high)))))[0]
+                 for a, b in pairwise(ends.tolist())]  # fmt: skip
+        return np.column_stack([ends[:-1], ends[1:]]), np.array(loads)
+
+    @property
+    def vehicle(self) -> Vehicle:
+        """The vehicle that is moved."""
+        assert self.model.vehicle is not None
+        return self.model.vehicle
 
     def reach(self, direction: str = "right") -> tuple[float, float]:
         """Return between which positions an axle, or a stretch, is above blocks that can move [m]."""
-        assert self.model.vehicle is not None
         surface = self.ground[0]
         free = np.array([self.bare.bodies[b].kind != "fixed" for b in surface.body.tolist()], dtype=bool)
         low, high = surface.start[free, 0].min(), surface.end[free, 0].max()
         sign = -1.0 if direction == "left" else 1.0
-        axles = [a for a in self.model.vehicle.axles if a.length is None or a.length < STRETCH]
+        axles = [a for a in self.vehicle.axles if a.length is None or a.length < STRETCH]
         ends = [sign * a.at for a in axles]
         if not ends:
-            ends = [sign * (a.at + s * 0.5 * (a.length or 0.0)) for a in self.model.vehicle.axles for s in (-1, 1)]
+            ends = [sign * (a.at + s * 0.5 * (a.length or 0.0)) for a in self.vehicle.axles for s in (-1, 1)]
         return float(low - max(ends)), float(high - min(ends))
 
     @property
     def directions(self) -> tuple[str, ...]:
         """Directions of travel that are looked at: one where the vehicle is the same both ways."""
-        vehicle = self.model.vehicle
-        assert vehicle is not None
+        vehicle = replace(self.vehicle, loaded=None)
         if vehicle.direction != "both":
             return (vehicle.direction,)
         there, back = (sorted(vehicle.footprints(0.0, way)) for way in ("right", "left"))

@@ -131,6 +131,8 @@ class VehicleTable(Table):
     group: Name | None = None
     source: StrictStr | None = None
     assumed: StrictStr | None = None
+    unfavourable: StrictBool | None = None
+    loaded: list[list[Length]] | None = Field(None, description="[from, to] of uniform load on the road")
     also: list[FollowerTable] = Field(default_factory=list)
     applied: StrictBool = Field(default=False, description="its loads are already in the file")
 
@@ -209,6 +211,7 @@ def vehicle_table(vehicle: Vehicle) -> dict[str, Any]:
     """Return the table that :func:`vehicle_of` reads back, its loads standing in the file."""
     found = {f.name: getattr(vehicle, f.name) or None for f in fields(vehicle) if f.name not in ("axles", "position")}
     found["position"] = vehicle.position
+    found["loaded"] = None if vehicle.loaded is None else [list(part) for part in vehicle.loaded]
     found["axles"] = [{f.name: getattr(a, f.name) for f in fields(Axle) if getattr(a, f.name) is not None}
                       for a in vehicle.axles]  # fmt: skip
     return {**found, "applied": True}

@@ -23,7 +23,7 @@ from concio.errors import InputError
 from concio.model.crossing import Vehicle
 from concio.model.fill import Fill
 from concio.model.model import Body, Load, Model, Tie
-from concio.model.road.spread import SpreadLoad, spread, spread_rule
+from concio.model.road.spread import SpreadLoad, along_the_road, spread, spread_rule
 from concio.model.road.surface import Road, Surface
 
 Array = np.ndarray
@@ -176,7 +176,7 @@ def ground_of(model: Model) -> tuple[Surface, Road]:
 
 def spread_under(
     model: Model, position: float, direction: str = "", ground: tuple[Surface, Road] | None = None,
-    *, whole: bool = True,
+    *, whole: bool = True, vehicle: Vehicle | None = None,
 ) -> SpreadLoad:  # fmt: skip
     """Return what the vehicle of a model brings to the masonry where its reference point is at ``position`` [m].
 
@@ -193,22 +193,25 @@ def spread_under(
     whole : bool
         Whether all axles have to stand on the road; else those beyond it are left out. Of stretches of uniform load
         only what stands on the road counts.
+    vehicle : Vehicle, optional
+        In place of that of the model.
 
     Raises
     ------
     InputError
         An axle stands outside the road.
     """
+    vehicle = vehicle or model.vehicle
     assert model.fill is not None
-    assert model.vehicle is not None
+    assert vehicle is not None
     surface, road = ground_of(model) if ground is None else ground
     low, high = float(road.line[0, 0]), float(road.line[-1, 0])
     on_road = []
-    for x, length, load, stretch in model.vehicle.footprints(position, direction):
+    for x, length, load, stretch in vehicle.footprints(position, direction):
         if stretch:
             begin, end = max(x - 0.5 * length, low), min(x + 0.5 * length, high)
             if end > begin:
-                on_road.append((0.5 * (begin + end), end - begin, load * (end - begin) / length))
+                on_road += along_the_road(begin, end, load * (end - begin) / length, 0.5 * (low + high))
         elif low - 1e-9 <= x <= high + 1e-9:
             on_road.append((x, length, load))
         elif whole:

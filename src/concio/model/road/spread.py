@@ -9,7 +9,8 @@ middle, with a pressure over it that is uniform, half a sine wave, or that of a 
 
 Depths differ from place to place, and bridges end: the pressures are therefore scaled so that their total over the
 surface below is the load. Each straight piece of the surface is cut where the pressure begins and ends on it, and
-integrated by Gauss points.
+integrated by Gauss points. A load that is uniform along the road spreads footprint by footprint, as the sum of its
+parts.
 """
 
 from __future__ import annotations
@@ -17,8 +18,9 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from functools import cache
+from functools import cache, lru_cache
 from importlib.resources import files
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -29,6 +31,10 @@ from concio.model.road.surface import Road, Surface
 
 Array = np.ndarray
 
+SHORT = 0.25
+"""Uniform load spreads in footprints that are at most this long [m]."""
+KEPT = 2048
+"""Footprints whose pressures are kept: uniform load has the same ones at every position of a vehicle."""
 GAUSS = np.polynomial.legendre.leggauss(8)
 SHAPES = ("uniform", "sine", "boussinesq")
 
@@ -123,6 +129,23 @@ class SpreadLoad:
     at: Array
 
 
+def along_the_road(begin: float, end: float, load: float, origin: float = 0.0) -> list[tuple[float, float, float]]:
+    """Return a load (kN) that is uniform along the road as short footprints, each of which spreads by itself.
+
+    So a stretch is the sum of its parts, and far from its ends the pressure below is that on the road. They end at
+    ``origin`` and at multiples of :data:`SHORT` from it, so that those of one stretch are those of another.
+
+    Examples
+    --------
+    >>> from concio.model.road.spread import along_the_road
+    >>> along_the_road(1.0, 1.5, 30.0)
+    [(1.125, 0.25, 15.0), (1.375, 0.25, 15.0)]
+    """
+    first, last = (int(np.floor((x - origin) / SHORT)) for x in (begin, end))
+    ends = [begin, *(x for k in range(first, last + 1) if begin < (x := origin + k * SHORT) < end), end]
+    return [(0.5 * (a + b), b - a, load * (b - a) / (end - begin)) for a, b in pairwise(ends)]
+
+
 def spread(
     rule: SpreadRule, surface: Surface, road: Road, footprints: tuple[tuple[float, float, float], ...]
 ) -> SpreadLoad:
@@ -158,6 +181,7 @@ def spread(
     return SpreadLoad(piece, force[piece], start + share[:, None] * (end - start))
 
 
+@lru_cache(maxsize=KEPT)
 def _shares(rule: SpreadRule, surface: Surface, road: Road, x: float, footprint: float) -> tuple[Array, Array]:
     """Return integral and first moment (n,) of the pressure under one load over the pieces of a surface."""
     base = rule.base(footprint)
