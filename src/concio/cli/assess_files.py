@@ -11,8 +11,7 @@ import numpy as np
 from concio.analysis.seismic.assessment import Assessment
 from concio.cli.outcome import write_verdict
 from concio.io.csv_table import write_csv
-from concio.report.assessment_page import write_assessment_report
-from concio.verdict.assessment_verdict import assessment_verdict
+from concio.report.assessment_page import AssessmentReport, write_assessment_report
 
 
 def write_assessment(
@@ -24,7 +23,7 @@ def write_assessment(
     write_assessment_report(found, place / "report.html", language=language, **options)
     written = ["report.html", "summary.json"]
     if language != "en":
-        written += write_verdict(place, assessment_verdict(found, language), language)
+        written += write_verdict(place, AssessmentReport(found, language=language).told, language)
     if docx:
         write_assessment_report(found, place / "report.docx", language=language, **options)
         written.append("report.docx")

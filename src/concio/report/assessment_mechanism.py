@@ -152,7 +152,7 @@ def _checks(t: Texts, m: LocalMechanism) -> str:
 
 def _line(t: Texts, c: Check, m: LocalMechanism) -> list[str]:
     """Return one line of the checks."""
-    q = m.site.rules.tables["levels"][c.level].get("q", 1.0)
+    q = m.q or m.site.rules.tables["levels"][c.level].get("q", 1.0)
     kind = t.say(c.kind, q=t.n(float(q))) if c.kind == "linear" else t.say(c.kind)
     return [c.level, kind, t.say(c.place), escape(c.clause), f"{t.n(c.demand, 5)} {c.unit}",
             f"{t.n(c.capacity, 5)} {c.unit}", t.checked(c, decides=m.decided_by(c))]  # fmt: skip

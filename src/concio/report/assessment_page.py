@@ -23,6 +23,7 @@ from concio.report.assessment_texts import Texts
 from concio.report.decisions_part import coverage_html, decisions_html
 from concio.report.docx_file import write_docx
 from concio.report.html_parts import page_html
+from concio.report.italian_page import text_in
 from concio.report.sensitivity_part import sensitivity_html
 from concio.report.strengthening_part import before_after, strengthening_html
 from concio.report.strips_part import strips_html
@@ -138,6 +139,7 @@ class AssessmentReport(Texts):
         return assessment_verdict(
             self.found, self.language, write=self.n, name=self.named,
             reason=lambda key: self.words["reason_" + key.replace(" ", "_")], way=self.way,
+            of_model=lambda line: text_in(line, self.language),
         )  # fmt: skip
 
     def top(self) -> str:

@@ -54,10 +54,11 @@ def _decisions(t: Texts, found: Assessment) -> list[tuple[str, str, str]]:
         ("confidence", t.n(found.confidence), t.n(factors[found.knowledge])),
         ("accept_linear", w["decide_linear" if asked.get("accept_linear") else "decide_both"], w["decide_both"]),
         ("curve", w[f"curve_{found.curve}"], w["curve_followed"]),
-        ("participation", w["decide_e_star"], w["decide_e_star"]),
+        ("participation", _share(t, asked.get("participation")), w["decide_e_star"]),
     ]
     if q:
-        rows.append(("q", "; ".join(t.n(v) for v in q), rules.name))
+        own, given = "; ".join(t.n(v) for v in q), asked.get("q")
+        rows.append(("q", own if given is None else t.n(given), f"{own} ({rules.name})"))
     rows += [("ties", f"{tie.name}: {w['unlimited'] if tie.yield_force is None else t.n(tie.strength) + ' kN'}", "–")
              for tie in found.model.ties]  # fmt: skip
     limits: Mapping[str, Any] = asked.get("limits") or {}
@@ -73,6 +74,11 @@ def _decisions(t: Texts, found: Assessment) -> list[tuple[str, str, str]]:
     rows += [("elsewhere", w.get(f"elsewhere_{item.replace(' ', '_')}", item), "–")
              for item in asked.get("elsewhere", ())]  # fmt: skip
     return rows
+
+
+def _share(t: Texts, given: float | None) -> str:
+    """Return what share of the mass takes part, as the author decided."""
+    return t.words["decide_e_star"] if given is None else t.words["decide_share"].format(share=t.n(given))
 
 
 def _held(t: Texts, given: OutOfPlane | Mapping[str, Any] | None) -> str:

@@ -11,6 +11,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from concio.display import number
+from concio.verdict.assessment_notes import assessment_notes
 from concio.verdict.assessment_words import WORDS
 from concio.verdict.attention import attention_of, joints_not_made
 from concio.verdict.question import Question, thickness_words
@@ -51,6 +52,7 @@ Write = Callable[[float, int], str]
 def assessment_verdict(
     found: Assessment, language: str = "en", *, write: Write = number, name: Callable[[str], str] | None = None,
     reason: Callable[[str], str] | None = None, way: Callable[[str], str] | None = None,
+    of_model: Callable[[str], str] = str,
 ) -> Verdict:  # fmt: skip
     """Return the verdict of an assessment.
 
@@ -62,8 +64,10 @@ def assessment_verdict(
         Writes a number with some digits, as the language does.
     name, reason, way : callable, optional
         Names of mechanisms, why a curve ends, and which way is pushed, in the language.
+    of_model : callable, optional
+        Puts a sentence about the model, which all commands share, into the language.
     """
-    return _Words(found, language, write, name or str, reason or _reason, way or str).verdict()
+    return _Words(found, language, write, name or str, reason or _reason, way or str, of_model).verdict()
 
 
 def none_sentence(none: NoMechanism, language: str = "en", largest: float = 2.0, write: Write = number) -> str:
@@ -136,11 +140,11 @@ class _Words:
 
     def __init__(
         self, found: Assessment, language: str, write: Write, name: Callable[[str], str], reason: Callable[[str], str],
-        way: Callable[[str], str],
+        way: Callable[[str], str], of_model: Callable[[str], str],
     ) -> None:  # fmt: skip
         self.found, self.language, self.words, self.write = found, language, WORDS[language], write
         self.name, self.reason = name, reason
-        self.way = way
+        self.way, self.of_model = way, of_model
 
     def say(self, key: str, **values: Any) -> str:
         """Return a sentence; numbers in it are written as the language does."""
@@ -162,7 +166,10 @@ class _Words:
             meaning=self.say("meaning"),
             limits=self.limits(),
             unchecked=tuple(self.item(item) for item in found.open),
-            attention=(*attention_of(found.model, found.assembly.detection), *found.notes, *self.assumed()),
+            attention=(
+                *(self.of_model(line) for line in attention_of(found.model, found.assembly.detection)),
+                *assessment_notes(found, self.language, self.write), *self.assumed(),
+            ),
             language=self.language,
         )
 
@@ -237,7 +244,7 @@ class _Words:
         ways = len(found.bounds)
         named = len(found.arguments.get("mechanisms") or {}) * ways
         followed = len(found.mechanisms) + len(found.others)
-        limits = [*joints_not_made(found.assembly.detection)]
+        limits = [self.of_model(line) for line in joints_not_made(found.assembly.detection)]
         places = {kind: found.places.get(kind, (0, 0))[0] for kind in ("levels", "openings", "returns", "changes")}
         limits.append(self.say("sought", sought=found.sought, named=named, parts=found.sought - named - ways,
                                followed=followed, **places))  # fmt: skip

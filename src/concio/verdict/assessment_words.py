@@ -81,6 +81,11 @@ EN = {
     "ground_bound": "forces in equilibrium and a motion prove the least multiplier of push {way} over all motions "
     "with associated friction, {alpha}, with a duality gap of {gap}; with Coulomb friction the least is not above it",
     "ground_open": "things that were asked for or are to be expected and were not checked: {n}; they are listed below",
+    "note_strong": "a_g = {a_g} g on rock at {level} is more than any site in Italy has; check that g was meant",
+    "note_confidence": "the confidence factor of {given} was given by the author; that of {level} would be {own}",
+    "note_q": "the behaviour factor q of {given} was given by the author; that of the code is {own}",
+    "note_participation": "the share of the mass that takes part, e* = {given}, was given by the author; that of a "
+    "mechanism is {own}",
     "assumed": "not given, and assumed: {what}",
     "assumed_soil": "soil {value}",
     "assumed_topography": "topography {value}",
@@ -176,6 +181,11 @@ IT = {
     "moti con attrito associato, {alpha}, con uno scarto di dualità di {gap}; con l'attrito di Coulomb il minimo non è "
     "maggiore",
     "ground_open": "cose richieste o da attendersi e non esaminate: {n}; sono elencate sotto",
+    "note_strong": "a_g = {a_g} g su roccia allo {level} supera quella di ogni sito italiano: è in g?",
+    "note_confidence": "il fattore di confidenza {given} è indicato dall'autore; quello di {level} sarebbe {own}",
+    "note_q": "il fattore di comportamento q = {given} è indicato dall'autore; quello della norma è {own}",
+    "note_participation": "la frazione di massa partecipante e* = {given} è indicata dall'autore; quella di un "
+    "meccanismo è {own}",
     "assumed": "non dati, e assunti: {what}",
     "assumed_soil": "sottosuolo {value}",
     "assumed_topography": "categoria topografica {value}",

@@ -19,7 +19,7 @@ from concio.analysis.seismic.open_items import ELSEWHERE, facades_of
 from concio.analysis.seismic.out_of_plane import covered_by, of_strips, strips_assessed
 from concio.analysis.seismic.searching import EVERY, Search, search_all
 from concio.analysis.seismic.sections import OutOfPlane, strips_of
-from concio.analysis.seismic.site import STRONG, Site
+from concio.analysis.seismic.site import Site
 from concio.analysis.seismic.tie_history import with_strength
 from concio.analysis.seismic.weakest_mechanism import chosen_bodies
 from concio.arguments import closest, strict
@@ -51,6 +51,8 @@ def assess(
     free_standing: Mapping[str, FreeStanding | Mapping[str, Any]] | None = None,
     elsewhere: Several[str] = (),
     accept_linear: bool = False,
+    q: float | None = None,
+    participation: float | None = None,
     out_of_plane: OutOfPlane | Mapping[str, Any] | None = None,
     progress: ProgressCallback | None = None,
 ) -> Assessment:
@@ -95,6 +97,11 @@ def assess(
     accept_linear : bool
         Whether a limit state counts as met where the linear check with the behaviour factor is, as the code allows; by
         default the check in displacements decides wherever there is one.
+    q : float, optional
+        Behaviour factor of the linear check, at least 1; by default that of the code.
+    participation : float, optional
+        Share of the mass that takes part, e*, in every mechanism: 1 for all of what moves, which lowers a_0*; by
+        default that of the chain of the mechanism.
     out_of_plane : OutOfPlane or mapping, optional
         How a facade drawn in elevation is held out of its plane:
         :class:`~concio.analysis.seismic.sections.OutOfPlane` or its arguments, ``{"held": [3.2, 6.4]}``. By default
@@ -163,7 +170,7 @@ def assess(
     if control is not None:
         _check_control(model, control)
     chosen = {name: chosen_bodies(model, name, words) for name, words in sought.items() if name != EVERY}
-    terms = Terms(site, wanted, factor, control, limits or {}, curve, accept_linear)
+    terms = Terms(site, wanted, factor, control, limits or {}, curve, accept_linear, *_decided(q, participation))
     acting = acting_in(model, ways)
     facades = facades_of(searches[0].assembly)
     held_out = _held_out(out_of_plane, facades)
@@ -181,30 +188,32 @@ def assess(
     arguments = {
         "levels": levels, "mechanisms": mechanisms, "direction": direction, "live": live, "knowledge": knowledge,
         "confidence": confidence, "control": control, "limits": limits, "curve": curve,
-        "free_standing": free_standing, "elsewhere": tuple(elsewhere), "accept_linear": accept_linear,
-        "out_of_plane": out_of_plane,
+        "free_standing": free_standing, "elsewhere": tuple(elsewhere), "accept_linear": accept_linear, "q": q,
+        "participation": participation, "out_of_plane": out_of_plane,
     }  # fmt: skip
     return Assessment(
         model, site, wanted, ranked, found.locked, knowledge, factor, reason, curve,
-        _notes(site, wanted, knowledge, factor, reason), arguments, others=(*found.others, *rest), sought=found.sought,
+        arguments, others=(*found.others, *rest), sought=found.sought,
         parts=found.parts, places=found.places, bounds=found.bounds, acting=acting,
         covered=(*found.covered, *covered_by(strips)), assembly=searches[0].assembly, strips=strips,
     )  # fmt: skip
 
 
-def _notes(site: Site, wanted: tuple[str, ...], knowledge: str, factor: float, reason: str) -> tuple[str, ...]:
-    """Return what is suspicious about the numbers of the site and of the knowledge."""
-    found = [
-        f"a_g = {site.at(level).a_g:g} g on rock at {level} is more than any site in Italy has; check that g was meant"
-        for level in wanted
-        if site.at(level).a_g > STRONG
-    ]
-    of_level = float(site.rules.tables["knowledge"][knowledge])
-    if reason == "given" and factor < of_level:
-        found.append(
-            f"the confidence factor of {factor:g} was given by the author; that of {knowledge} would be {of_level:g}"
-        )
-    return tuple(found)
+def _decided(q: float | None, participation: float | None) -> tuple[float | None, float | None]:
+    """Return what the author decided of both, checked.
+
+    Raises
+    ------
+    InputError
+        One is not a number that it can be.
+    """
+    if q is not None and not 1.0 <= q < math.inf:
+        msg = f"a behaviour factor q of {q:g} must be at least 1"
+        raise InputError(msg)
+    if participation is not None and not 0.0 < participation <= 1.0:
+        msg = f"a share of the mass that takes part, {participation:g}, must lie above 0 and not above 1"
+        raise InputError(msg, hint="participation = 1 takes all of the mass that moves")
+    return q, participation
 
 
 def _held_out(given: OutOfPlane | Mapping[str, Any] | None, facades: Several[tuple[int, ...]]) -> OutOfPlane:

@@ -22,6 +22,7 @@ from concio.analysis.sensitivity import Sensitivity
 from concio.contact.assembly import Assembly
 from concio.model.model import Model
 from concio.solvers.statics.associated_limit import LimitLoad
+from concio.verdict.assessment_notes import assessment_notes
 from concio.verdict.assessment_verdict import assessment_verdict
 from concio.verdict.question import Acting
 from concio.verdict.verdict import Verdict
@@ -50,8 +51,6 @@ class Assessment(Shown):
         Where it comes from; "crushing": joints without compressive strength ask for the largest.
     curve : {"followed", "straight"}
         Which capacity curve counts.
-    notes : tuple of str
-        What asks for attention.
     arguments : mapping
         Of the call, for assessing a changed model again.
     others : tuple of LocalMechanism
@@ -85,7 +84,6 @@ class Assessment(Shown):
     confidence: float
     confidence_by: str
     curve: str
-    notes: tuple[str, ...]
     arguments: Mapping[str, Any]
     others: tuple[LocalMechanism, ...]
     sought: int
@@ -96,6 +94,11 @@ class Assessment(Shown):
     covered: tuple[Covered, ...]
     assembly: Assembly
     strips: tuple[StripFound, ...] = ()
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What asks for attention in the numbers of the site and in the decisions of the author."""
+        return assessment_notes(self)
 
     @property
     def worst(self) -> LocalMechanism | None:

@@ -152,7 +152,7 @@ def _arguments(table: AssessmentTable, site: Site) -> dict[str, Any]:
         "site": site, "levels": table.levels, "mechanisms": mechanisms, "direction": table.direction,
         "live": table.live, "knowledge": table.knowledge, "confidence": table.confidence, "control": control,
         "limits": table.limits, "curve": table.curve, "elsewhere": tuple(table.elsewhere),
-        "accept_linear": table.accept_linear,
+        "accept_linear": table.accept_linear, "q": table.q, "participation": table.participation,
         "out_of_plane": None if table.out_of_plane is None else table.out_of_plane.model_dump(exclude_none=True),
         "free_standing": {k: v.model_dump(exclude_none=True) for k, v in table.free_standing.items()},
     }  # fmt: skip

@@ -175,6 +175,7 @@ def checks_of(
     limit: Displacement | None,
     branch: ElasticBranch | None = None,
     start: float | None = None,
+    q: float | None = None,
 ) -> list[Check]:
     """Return the checks of a limit state.
 
@@ -196,12 +197,14 @@ def checks_of(
     start : float, optional
         Spectral acceleration at which the mechanism begins to move [m/s2], by default that of the onset; less where
         ties pull only as they get longer.
+    q : float, optional
+        Behaviour factor of the linear check; by default that of the code.
     """
     start = onset if start is None else min(start, onset)
     places: list[Place] = ["ground"]
     if site.at_height(site.spectrum(site.at(level)), z) is not None:
         places.append("height")
-    made = [check for place in places for check in _checks_at(place, site, level, z, onset, limit, branch, start)]
+    made = [check for place in places for check in _checks_at(place, site, level, z, onset, limit, branch, start, q)]
     return made if {check.place for check in made} == set(places) else []
 
 
@@ -231,7 +234,7 @@ def onset_zeta(site: Site, level: str, z: float, onset: float) -> float:
 
 def _checks_at(
     place: Place, site: Site, level: str, z: float, onset: float, limit: Displacement | None,
-    branch: ElasticBranch | None, start: float,
+    branch: ElasticBranch | None, start: float, given: float | None,
 ) -> list[Check]:  # fmt: skip
     """Return the checks of a limit state with the spectrum of the ground, or with that at the height z."""
     own, xi = (0.0, 5.0) if branch is None else (branch.T0, branch.xi)
@@ -250,7 +253,7 @@ def _checks_at(
 
     kind: Kind = "onset" if rule["kind"] == "onset" else "linear"
     if kind == "onset" or "q" in rule:
-        q = float(rule.get("q", 1.0))
+        q = 1.0 if "q" not in rule else float(rule["q"]) if given is None else given
         free = "" if branch is None else "; " + rules.clause("onset_free")
         clause = rules.clause("onset_free") if branch and kind == "onset" else rules.clause(kind) + free
         made = _check(site, level, kind, place, onset, lambda h: begins(h) / q, hazard, clause + floor)

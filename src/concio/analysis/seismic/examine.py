@@ -57,6 +57,10 @@ class Terms:
     curve : {"followed", "straight"}
     accept_linear : bool
         Whether the linear check decides where it is met.
+    q : float or None
+        Behaviour factor of the linear check; None for that of the code.
+    participation : float or None
+        e* of every mechanism; None for that of its chain.
     """
 
     site: Site
@@ -66,6 +70,12 @@ class Terms:
     limits: Mapping[str, float]
     curve: str
     accept_linear: bool = False
+    q: float | None = None
+    participation: float | None = None
+
+    def share(self, chain: Chain) -> float:
+        """Return the e* that counts: that of a chain, or what the author has decided."""
+        return chain.e_star if self.participation is None else self.participation
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,7 +127,7 @@ class Prepared:
 
     def factor(self, terms: Terms) -> float:
         """Return spectral acceleration over alpha: g / (e* FC) [m/s2]."""
-        return terms.site.rules.gravity / (self.chain.e_star * terms.confidence)
+        return terms.site.rules.gravity / (terms.share(self.chain) * terms.confidence)
 
     def least(self, terms: Terms) -> dict[str, float]:
         """Return for each limit state a zeta_E that following the mechanism cannot fall below: that of its onset."""
@@ -228,13 +238,14 @@ def examined(ready: Prepared, terms: Terms, element: FreeStanding | None = None)
         if used is not None and used.ends and rule["kind"] != "onset":
             limit = limit_of(level, rule, used, chain.spectral, factor, terms.limits.get(level, math.inf), branch)
             reached[level] = limit
-        checks += checks_of(site, level, z, onset=alpha * factor, limit=limit, branch=branch, start=start * factor)
+        checks += checks_of(site, level, z, onset=alpha * factor, limit=limit, branch=branch, start=start * factor,
+                            q=terms.q)  # fmt: skip
     return LocalMechanism(
         name=ready.name, direction=ready.push.way, found=ready.found, assembly=ready.assembly, linkage=ready.linkage,
         chain=chain, dead=ready.dead, control=ready.control, level=z, multiplier=alpha, confidence=terms.confidence,
         factor=factor, followed=followed, straight=line, limits=reached, checks=tuple(checks),
         periods={level: site.at(level) for level in levels}, site=site, velocity=ready.motion.ravel(),
-        branch=branch, accept_linear=terms.accept_linear,
+        branch=branch, accept_linear=terms.accept_linear, q=terms.q, e_star=terms.share(chain),
     )  # fmt: skip
 
 

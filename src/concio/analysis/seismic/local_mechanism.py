@@ -102,6 +102,10 @@ class LocalMechanism:
         Of an element that is free to vibrate.
     accept_linear : bool
         Whether the linear check decides a limit state where it is met at every place and gives the larger zeta_E.
+    q : float or None
+        Behaviour factor of the linear check, where it is not that of the code.
+    e_star : float
+        Share of the mass that takes part: that of the chain, or what the author has decided.
     section : Model or None
         Of a strip out of the plane of a facade, the model of its section; None for mechanisms of the model itself.
     """
@@ -127,6 +131,8 @@ class LocalMechanism:
     velocity: Array = field(repr=False)
     branch: ElasticBranch | None = None
     accept_linear: bool = False
+    q: float | None = None
+    e_star: float = math.nan
     section: Model | None = None
 
     @property
@@ -147,11 +153,6 @@ class LocalMechanism:
         moved = [self.velocity_at(g, np.asarray(bodies[b].vertices)) for b, g in self.mechanics.of_body.items()]
         sizes = np.linalg.svd(np.vstack(moved), compute_uv=False)
         return len(sizes) < 3 or bool(sizes[2] <= PARALLEL * sizes[0])
-
-    @property
-    def e_star(self) -> float:
-        """Share of the mass that takes part."""
-        return self.chain.e_star
 
     @property
     def onset(self) -> float:

@@ -18,8 +18,8 @@ from concio.arguments import closest, strict_class
 from concio.errors import InputError
 from concio.units import quantity
 
-LARGEST, STRONG = 1.0, 0.5
-"""No rock shakes harder than the first [g]; more than the second is reported, for m/s2 may have been meant."""
+LARGEST = 1.0
+"""No rock shakes harder [g]."""
 
 
 @dataclass(frozen=True)

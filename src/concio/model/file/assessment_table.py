@@ -273,12 +273,16 @@ class AssessmentTable(Table):
     accept_linear: Annotated[
         bool, Field(description="whether a limit state is met where the linear check is")
     ] = False
+    q: Annotated[Number | None, Field(description="behaviour factor of the linear check; by default the code's")] = None
+    participation: Annotated[
+        Number | None, Field(description="share of the mass that takes part, e*; by default that of each mechanism")
+    ] = None
     out_of_plane: Annotated[
         OutOfPlaneTable | None, Field(description="of a facade drawn in elevation: what holds it out of its plane")
     ] = None
     reasons: Annotated[
         dict[str, StrictStr],
-        Field(description="why the author decided so: of levels, direction, knowledge, accept_linear, curve, ..."),
+        Field(description="why the author decided so: of levels, direction, knowledge, accept_linear, q, ..."),
     ] = Field(default_factory=dict)
     elsewhere: Annotated[
         list[StrictStr], Field(description="what the author answers for: out of plane, height, ties")
