@@ -28,6 +28,10 @@ Words = Mapping[str, str]
 
 ENLARGED = 0.10
 """Largest motion in the picture of a mechanism, over the size of the model."""
+NAME_SIZES = (3.0, 6.5)
+"""Sizes of letters of names of blocks, least and largest [pt]."""
+LETTER, AXES_SHARE = 0.6, 0.85
+"""Width of a letter over its size, and what of a figure is left to its axes."""
 SMALL = (4.3, 3.2)
 """Width and height of a diagram of capacity or demand [in]."""
 DEMAND = ("#0072B2", "#D55E00", "#009E73", "#CC79A7")
@@ -65,15 +69,30 @@ def model_figure(found: Assessment, ax: Axes | None = None) -> Axes:
             text = f"{number(float(np.hypot(*f.force)), 3)} kN"
             ax.annotate(text, _xy(f.point - arrow), fontsize=7.5, color=style.LOAD.colour, ha="center",
                         va="bottom" if arrow[1] < 0 else "center")  # fmt: skip
-    if len(model.free_bodies) <= 60:
-        for block in model.free_bodies:
-            ax.annotate(block.name, _xy(block.centroid), ha="center", va="center", fontsize=6.5, color="#555555")
-    _dimensions(ax, model, low, high)
+    _names(ax, model, box)
+    _dimensions(ax, model, low, high, _scale(ax, box))
     style.dress(ax, box, "")
     return ax
 
 
-def _dimensions(ax: Axes, model: Any, low: Array, high: Array) -> None:
+def _names(ax: Axes, model: Any, box: Array) -> None:
+    """Write the name of each block where letters that can be read on paper fit into it."""
+    scale = _scale(ax, box)
+    for block in model.free_bodies:
+        wide, high = np.ptp(block.vertices, axis=0) * scale
+        size = min(NAME_SIZES[1], wide / (LETTER * len(block.name)), high)
+        if size >= NAME_SIZES[0]:
+            ax.annotate(block.name, _xy(block.centroid), ha="center", va="center", fontsize=size, color="#555555")
+
+
+def _scale(ax: Axes, box: Array) -> float:
+    """Return how many points of a figure a metre has."""
+    figure = ax.get_figure(root=True)
+    assert figure is not None
+    return float((72.0 * AXES_SHARE * np.asarray(figure.get_size_inches()) / (box[1] - box[0])).min())
+
+
+def _dimensions(ax: Axes, model: Any, low: Array, high: Array, points_for_a_metre: float) -> None:
     """Draw the overall width and height of what is free, and those of the openings [m]."""
     gap = 0.05 * float((high - low).max())
     look = {"arrowstyle": "<->", "color": style.INK, "lw": 0.7, "shrinkA": 0, "shrinkB": 0}
@@ -86,8 +105,10 @@ def _dimensions(ax: Axes, model: Any, low: Array, high: Array) -> None:
     free = [b for b, body in enumerate(model.bodies) if body.kind != "fixed"]
     for hole in openings_of(model, free, np.array([1.0, 0.0])):
         width, height = hole.sides[1] - hole.sides[0], hole.heights[1] - hole.heights[0]
-        ax.annotate(f"{number(width, 3)} x {number(height, 3)} m", (sum(hole.sides) / 2, sum(hole.heights) / 2),
-                    ha="center", va="center", fontsize=7)  # fmt: skip
+        text = f"{number(width, 3)} x {number(height, 3)} m"
+        fits = width * points_for_a_metre / (LETTER * len(text))
+        text, size = (text, min(7.0, fits)) if fits >= 5.5 else (text.replace(" x ", "\nx "), min(7.0, 1.8 * fits))
+        ax.annotate(text, (sum(hole.sides) / 2, sum(hole.heights) / 2), ha="center", va="center", fontsize=size)
 
 
 def mechanism_figure(mechanism: LocalMechanism, ax: Axes | None = None) -> Axes:

@@ -37,6 +37,8 @@ SEEN = 50
 """A colour on fewer points of a picture is not explained: nobody finds it."""
 NAMED = 60
 """Up to this many bodies get their names written."""
+NAME_SIZE = 5.5
+"""Size of a name of a block [pt]."""
 
 VIEWS: dict[str, tuple[float, float]] = {
     "front": (0.0, 0.0),
@@ -99,7 +101,7 @@ def _names(ax: Axes, model: Model, picture: Picture) -> None:
         )
         if len(seen):
             at = picture.axes[:2] @ middles[seen[np.argmax(body.normals[seen] @ picture.axes[2])]]
-            ax.text(at[0], at[1], body.name, fontsize=5.5, ha="center", va="center", color=style.INK, zorder=6)
+            ax.text(at[0], at[1], body.name, fontsize=NAME_SIZE, ha="center", va="center", color=style.INK, zorder=6)
 
 
 @strict

@@ -23,7 +23,7 @@ from concio.report.assessment_texts import Texts
 from concio.report.decisions_part import coverage_html, decisions_html
 from concio.report.docx_file import write_docx
 from concio.report.html_parts import page_html
-from concio.report.italian_page import text_in
+from concio.report.italian_page import plain_italian
 from concio.report.sensitivity_part import sensitivity_html
 from concio.report.strengthening_part import before_after, strengthening_html
 from concio.report.strips_part import strips_html
@@ -139,7 +139,7 @@ class AssessmentReport(Texts):
         return assessment_verdict(
             self.found, self.language, write=self.n, name=self.named,
             reason=lambda key: self.words["reason_" + key.replace(" ", "_")], way=self.way,
-            of_model=lambda line: text_in(line, self.language),
+            of_model=plain_italian if self.language == "it" else str,
         )  # fmt: skip
 
     def top(self) -> str:
@@ -258,7 +258,7 @@ class AssessmentReport(Texts):
         if model.dim == 3:
             reach = np.ptp(np.vstack([np.asarray(b.vertices) for b in model.free_bodies]), axis=0)
             text += " " + self.say("overall", size=" x ".join(self.n(float(v)) for v in reach))
-        drawn = self.figure(model_figure(self.found), "figure_model", "tall")
+        drawn = self.figure(model_figure(self.found), "figure_model", "tall" if model.dim == 2 else "solid")
         return (
             f"<section id=model><h2>{self.say('model')}</h2><p>{text}</p><div class=side>{drawn}<div>"
             f"<h3>{self.say('loads')}</h3>{self.table(head, rows, 2)}{ties}</div></div></section>"

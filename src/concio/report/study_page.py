@@ -13,9 +13,10 @@ from concio.display import number
 from concio.plot.study_figures import suitable
 from concio.report.html_parts import figure_html, page_html, question_html
 from concio.report.italian_page import Language, figure_in, page_in
-from concio.verdict.study_verdict import output_words, verdict_counts
+from concio.verdict.study_verdict import output_words, required_words, verdict_counts
 
 if TYPE_CHECKING:
+    from concio.studies.study_reliability import RequiredMultiplier
     from concio.studies.study_result import StudyResult
     from concio.studies.study_rows import Row
 
@@ -62,6 +63,8 @@ def study_html(
         f"<section><h2>Outputs</h2>{_outputs(study)}</section>",
         f"<section><h2>Variables</h2>{_variables(study)}</section>",
     ]
+    if study.required is not None and study.required.index is not None:
+        parts.append(f"<section id=reliability><h2>Reliability</h2>{_reliability(study, study.required)}</section>")
     if figures:
         drawn = "".join(
             figure_html(figure_in(axes, language), name, caption) for name, axes, caption in suitable(study)
@@ -105,6 +108,26 @@ def _variables(study: StudyResult) -> str:
     )
     head = "<th>variable</th><th>distribution</th><th>keys of the model file</th>"
     return f"<div class=scroll><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>"
+
+
+def _reliability(study: StudyResult, asked: RequiredMultiplier) -> str:
+    """Return the design point with what each variable contributes."""
+    found = asked.index
+    assert found is not None
+    text = (
+        f"{number(found.beta, 4)} standard deviations lie between the medians and the nearest values with which the "
+        f"multiplier falls to {number(asked.required)}."
+    )
+    rows = "".join(
+        f"<tr><td translate=no>{escape(v.name)}{f' [{escape(v.unit)}]' if v.unit else ''}</td>"
+        f"<td class=n>{number(found.point[v.name], 4)}</td><td class=n>{number(100 * found.importance[v.name])}</td>"
+        f"<td class=n>{number(found.direction[v.name])}</td></tr>"
+        for v in study.sample.variables
+    )
+    heads = ("variable", "value at the design point", "share of the variance [%]", "index per standard deviation")
+    head = "".join(f"<th>{w}</th>" for w in heads)
+    table = f"<table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table>"
+    return f"<p>{escape(required_words(study))} {text}</p><div class=scroll>{table}</div>"
 
 
 def _failed(study: StudyResult) -> str:

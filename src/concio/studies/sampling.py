@@ -9,7 +9,7 @@ copula: two normal variables with correlation r have rank correlation (6/pi) asi
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from math import prod
 from typing import Any
@@ -45,6 +45,8 @@ class Sample:
         What random numbers began with.
     seeds : (n,) integers
         A seed of its own for each run, from ``numpy.random.SeedSequence(seed).spawn``.
+    correlated : bool
+        Whether variables were drawn with a correlation.
     """
 
     variables: tuple[Variable, ...]
@@ -52,6 +54,7 @@ class Sample:
     design: str
     seed: int
     seeds: Array
+    correlated: bool = False
 
     def __len__(self) -> int:
         return len(self.numbers)
@@ -132,7 +135,7 @@ def draw(
             raise InputError(msg, hint="leave the correlation out, or take another sample")
         u = _correlated(u, variables, pairs)
     numbers = np.column_stack([v.quantile(u[:, j]) for j, v in enumerate(variables)])
-    return given_sample(variables, numbers, design, seed)
+    return replace(given_sample(variables, numbers, design, seed), correlated=bool(pairs))
 
 
 def given_sample(variables: Sequence[Variable], numbers: Array, design: str = "given", seed: int = 0) -> Sample:

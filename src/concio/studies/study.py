@@ -11,7 +11,7 @@ import os
 import time
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +32,7 @@ from concio.studies.outputs import outputs_of
 from concio.studies.sampling import Correlation, Sample, draw, given_sample
 from concio.studies.statistics import probability
 from concio.studies.store import Store, describe, missing
+from concio.studies.study_reliability import required_multiplier
 from concio.studies.study_result import StudyResult, event_of
 from concio.studies.study_rows import Row, Tables, Task
 from concio.studies.variables import Variable, variable
@@ -136,6 +137,7 @@ def study(
     method: str | None = None,
     factors: Mapping[str, float] | None = None,
     live: str | Sequence[str] | None = None,
+    required: float | None = None,
     progress: Progress | None = None,
 ) -> StudyResult:
     """Make many runs of one model and return their table.
@@ -175,6 +177,8 @@ def study(
         When to stop before the end of the sample.
     method, factors, live
         Of the analyses, as in :func:`concio.solve` and :func:`concio.limit`.
+    required : float, optional
+        Multiplier of ``live`` that is required: its reliability index of first order is given beside the sample.
     progress : callable, optional
         Called with :class:`StudyProgress` after every row; true stops the study.
 
@@ -249,7 +253,12 @@ def study(
         msg = f"'{stop.output}' is not an output of the study"
         raise InputError(msg, where="stop", hint="outputs: " + ", ".join(o.name for o in wanted))
     path = None if directory is None else Path(directory)
-    return _run(task, made, path, resume, stop, progress, executor, workers)
+    wanted_multiplier = required if required is not None else given.required
+    index = None
+    if wanted_multiplier is not None:  # before the runs: what it refuses is refused at once
+        index = required_multiplier(wanted_multiplier, source, made, settings)
+    found = _run(task, made, path, resume, stop, progress, executor, workers)
+    return found if index is None else replace(found, required=index)
 
 
 def _run(

@@ -40,6 +40,7 @@ from concio.views import Shown, view
 
 if TYPE_CHECKING:
     from concio.plot.study_figures import StudyPlots
+    from concio.studies.study_reliability import RequiredMultiplier
 
 Array = np.ndarray
 Event = str | Callable[[Mapping[str, Any]], bool]
@@ -64,6 +65,8 @@ class StudyResult(Shown):
         Whether it stopped before the end of the sample because the stopping criterion was met.
     settings : Settings or None
         Load factors and multiplied groups of the analyses.
+    required : RequiredMultiplier or None
+        Reliability index of the multiplier that is required, where one is.
     """
 
     sample: Sample
@@ -73,6 +76,7 @@ class StudyResult(Shown):
     directory: Path | None = None
     stopped: bool = False
     settings: Settings | None = None
+    required: RequiredMultiplier | None = None
 
     def __len__(self) -> int:
         return len(self.rows)
@@ -268,6 +272,7 @@ class StudyResult(Shown):
             "outputs": outputs,
             "variables": {v.name: v.describe() for v in self.sample.variables},
             "verdict": self.verdict.as_dict(),
+            **({} if self.required is None else {"required": self.required.as_dict()}),
         }
 
     @property

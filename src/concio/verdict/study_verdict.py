@@ -54,7 +54,7 @@ def study_verdict(study: StudyResult) -> Verdict:
         status="done" if done else "incomplete",
         question=_question(study),
         headline=f"{runs}, each with an answer." if answered else f"{runs}, not all of which have an answer.",
-        answer=f"{runs}: {verdict_counts(study)}.{early} {answers}",
+        answer=" ".join(filter(None, (f"{runs}: {verdict_counts(study)}.{early} {answers}", required_words(study)))),
         proof="each row has the verdict of its own analyses; nothing is added to it",
         meaning="Every run is a row, whatever its outcome. A structure that is proven not to stand counts as worse "
         "than any "
@@ -135,7 +135,20 @@ def _unanswered(study: StudyResult) -> list[str]:
             why = Counter(_why(study, o.name))
             reason = f": {why.most_common(1)[0][0]}" if why else ""
             found.append(f"{o.name} in {count} of {len(study)} runs{reason}")
+    asked = study.required
+    if asked is not None and asked.index is None:
+        groups = ", ".join(asked.groups)
+        found.append(f"reliability index of a multiplier of {number(asked.required)} of {groups}: {asked.why}")
     return found
+
+
+def required_words(study: StudyResult) -> str:
+    """Return the reliability index of the multiplier that is required; nothing where there is none."""
+    asked = study.required
+    if asked is None or asked.index is None:
+        return ""
+    groups = ", ".join(asked.groups)
+    return f"A multiplier of {number(asked.required)} of {groups} is required. {asked.index.sentence}."
 
 
 def _unseen(study: StudyResult) -> list[str]:
@@ -152,7 +165,10 @@ def _why(study: StudyResult, name: str) -> list[str]:
 
 def _bounds(study: StudyResult) -> tuple[str, ...]:
     """Return which outputs are bounds rather than the thing itself."""
-    return tuple(f"{o.name} is the {o.meaning}" for o in study.outputs if "bound" in o.meaning)
+    found = [f"{o.name} is the {o.meaning}" for o in study.outputs if "bound" in o.meaning]
+    if study.required is not None and study.required.index is not None:
+        found.append("the reliability index is that of the associated multiplier, an upper bound where joints slide")
+    return tuple(found)
 
 
 def _question(study: StudyResult) -> Question:

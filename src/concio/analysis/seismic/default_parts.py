@@ -21,7 +21,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
-from concio.analysis.seismic.layout import leaves_of, openings_of, returns_of, spans_along
+from concio.analysis.seismic.layout import THIN, leaves_of, openings_of, returns_of, spans_along
 from concio.contact.assembly import Assembly
 from concio.contact.separate import surroundings
 from concio.kinematics.frames import turned_left
@@ -213,8 +213,11 @@ def _lines(model: Model, free: list[int], axis: Array, most: int, *, changes_onl
     spans = np.array([(s.min(), s.max()) for s in (np.asarray(model.bodies[i].vertices) @ axis for i in free)])
     section = np.array([model.bodies[i].volume for i in free]) / np.maximum(np.ptp(spans, axis=1), 1e-300)
     size = float(np.ptp(spans)) or 1.0
-    every = np.unique(np.round(spans.ravel() / (1e-6 * size))) * 1e-6 * size
-    inner = [float(v) for v in every if spans.min() + 1e-4 * size < v < spans.max() - 1e-4 * size]
+    every: list[float] = []
+    for v in np.sort(spans.ravel()):
+        if not every or v - every[-1] > THIN * size:
+            every.append(float(v))
+    inner = [v for v in every if spans.min() + 1e-4 * size < v < spans.max() - 1e-4 * size]
     step = 1e-4 * size
 
     def area(at: float) -> float:

@@ -24,6 +24,9 @@ Array = np.ndarray
 WIDE = 0.01
 """What is free between two blocks is an opening from this share of the length of the structure on."""
 
+THIN = 1e-3
+"""Ranges between edges of blocks below this share of the structure, by which drawings are out, are not looked at."""
+
 DEEPER = 1.5
 """Times the least that lies in blocks along the push from which on there is a return."""
 
@@ -64,12 +67,12 @@ def returns_of(model: Model, bodies: Sequence[int], along: Array, across: Array)
     edges = _edges(place)
     within = [(a, b, _covered(depth[(place[:, 0] < m) & (place[:, 1] > m)])) for a, b, m in _cells(edges)]
     filled = [(a, b, size) for a, b, size in within if size > 0]
-    least = min((size for _, _, size in filled), default=0.0)
+    least, thin = min((size for _, _, size in filled), default=0.0), THIN * float(np.ptp(place))
     found: list[tuple[float, float]] = []
     for a, b, size in filled:
         if size <= DEEPER * least:
             continue
-        if found and found[-1][1] == a:
+        if found and a - found[-1][1] <= thin:
             found[-1] = found[-1][0], b
         else:
             found.append((a, b))
@@ -115,16 +118,16 @@ def openings_of(model: Model, bodies: Sequence[int], axis: Array) -> tuple[Openi
     up = np.zeros(model.dim)
     up[-1] = 1.0
     place, height = spans_along(model, bodies, axis), spans_along(model, bodies, up)
-    wide = WIDE * float(np.ptp(place))
+    wide, thin, tall = WIDE * float(np.ptp(place)), THIN * float(np.ptp(height)), WIDE * float(np.ptp(height))
     found: list[Opening] = []
     for low, high, middle in _cells(_edges(height)):
         row = place[(height[:, 0] < middle) & (height[:, 1] > middle)]
         for a, b in _free(row, wide):
-            under = [o for o in found if o.heights[1] == low and o.sides[0] < b and o.sides[1] > a]
+            under = [o for o in found if low - o.heights[1] <= thin and o.sides[0] < b and o.sides[1] > a]
             sides = min([a, *(o.sides[0] for o in under)]), max([b, *(o.sides[1] for o in under)])
             found = [o for o in found if o not in under]
             found.append(Opening(sides, (min((o.heights[0] for o in under), default=low), high)))
-    return tuple(found)
+    return tuple(o for o in found if o.heights[1] - o.heights[0] > tall)
 
 
 def _edges(spans: Array) -> Array:
@@ -134,8 +137,9 @@ def _edges(spans: Array) -> Array:
 
 
 def _cells(edges: Array) -> list[tuple[float, float, float]]:
-    """Return (from, to, middle) of the ranges between edges."""
-    return [(float(a), float(b), float(a + b) / 2) for a, b in pairwise(edges)]
+    """Return (from, to, middle) of the ranges between edges but for thin ones."""
+    thin = THIN * float(np.ptp(edges)) if len(edges) else 0.0
+    return [(float(a), float(b), float(a + b) / 2) for a, b in pairwise(edges) if b - a > thin]
 
 
 def _covered(spans: Array) -> float:

@@ -114,6 +114,8 @@ class StudyTable(Table):
         Load factors of each run.
     live :
         Load groups that grow where a limit load is asked for.
+    required :
+        Multiplier of ``live`` that is required; its reliability index of first order is given beside the sample.
     """
 
     sample: Name = "latin-hypercube"
@@ -127,6 +129,7 @@ class StudyTable(Table):
     method: Name = "auto"
     factors: dict[str, float] = Field(default_factory=dict)
     live: list[Name] = Field(default_factory=lambda: ["live"])
+    required: float | None = None
 
     @model_validator(mode="before")
     @classmethod
