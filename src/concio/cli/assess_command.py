@@ -54,6 +54,8 @@ def assess(
 
     if language is not None:
         words_of("assessment_words", language)
+    if docx:  # before minutes of work
+        _check_docx(out)
     if out is not None:
         check_directory(out)
     asked = read_asked(file)
@@ -105,6 +107,23 @@ def assess(
     elif written:
         say(f"  written              {out}: {', '.join(written)}")
     return verdict.exit_code
+
+
+def _check_docx(out: Path | None) -> None:
+    """Refuse a docx file that cannot be written.
+
+    Raises
+    ------
+    InputError
+        Its library is not installed, or no directory is given.
+    """
+    from concio.errors import InputError
+    from concio.report.docx_file import docx_library
+
+    docx_library()
+    if out is None:
+        msg = "--docx writes beside the report, and no directory is given"
+        raise InputError(msg, hint="give one with --out")
 
 
 def finite_or_none(value: float) -> float | None:

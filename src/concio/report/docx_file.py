@@ -38,17 +38,27 @@ def write_docx(html: str, path: Path | str) -> Path:
     InputError
         python-docx is not installed.
     """
-    try:
-        docx = import_module("docx")
-    except ImportError:
-        msg = "docx files need the package python-docx"
-        raise InputError(msg, hint='pip install "concio[docx]", or write the report as HTML and print it') from None
-    reader = _Reader(docx)
+    reader = _Reader(docx_library())
     reader.feed(html)
     reader.close()
     path = Path(path)
     reader.document.save(str(path))
     return path
+
+
+def docx_library() -> Any:
+    """Return the library that writes docx files.
+
+    Raises
+    ------
+    InputError
+        It is not installed.
+    """
+    try:
+        return import_module("docx")
+    except ImportError:
+        msg = "docx files need the package python-docx"
+        raise InputError(msg, hint='pip install "concio[docx]", or write the report as HTML and print it') from None
 
 
 class _Reader(HTMLParser):

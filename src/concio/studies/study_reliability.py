@@ -65,7 +65,7 @@ def required_multiplier(required: float, source: object, sample: Sample, setting
     Raises
     ------
     InputError
-        The multiplier is no number, or models come from a function.
+        The multiplier is not a number, or models come from a function.
     """
     if not math.isfinite(required):
         msg = f"required = {required!r} must be a number"

@@ -9,10 +9,12 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from typer.testing import CliRunner
 
 import concio
 from concio.analysis.seismic.assessment_asked import Head, read_asked
 from concio.analysis.seismic.hazard_grid import hazard_at
+from concio.cli.main import app
 from concio.errors import InputError
 from concio.plot.assessment_figures import curve_figure, model_figure
 from concio.plot.figure_language import in_language
@@ -176,6 +178,22 @@ def test_without_the_library_docx_is_refused_in_a_sentence(tmp_path: Path, monke
     found = concio.assess(overturning(2), site=site(), direction="left", levels=["SLD"])
     with pytest.raises(InputError, match="python-docx"):
         found.report(tmp_path / "r.docx")
+    path = tmp_path / "m.toml"
+    path.write_text(MODEL + "[site.hazard.SLV]\na_g = 0.2\n", encoding="utf-8")
+    monkeypatch.setattr(concio, "assess", None)  # it is refused before anything is computed
+    for more, said in (["--out", str(tmp_path / "out")], "python-docx"), ([], "python-docx"):
+        result = CliRunner().invoke(app, ["assess", str(path), "--docx", *more])
+        assert result.exit_code == 2
+        assert said in result.stderr
+    monkeypatch.undo()
+
+
+def test_a_docx_file_needs_a_directory(tmp_path: Path) -> None:
+    pytest.importorskip("docx")
+    path = tmp_path / "m.toml"
+    path.write_text(MODEL + "[site.hazard.SLV]\na_g = 0.2\n", encoding="utf-8")
+    result = CliRunner().invoke(app, ["assess", str(path), "--docx"])
+    assert (result.exit_code, "give one with --out" in result.stderr) == (2, True)
 
 
 @pytest.mark.parametrize(("language", "mark"), [("en", "."), ("it", ",")])
