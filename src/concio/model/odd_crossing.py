@@ -6,6 +6,7 @@ Each finding is a sentence for a person; :mod:`concio.model.plausibility` puts t
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import pairwise
 
 from concio.model.crossing import STRETCH, TONNES, Vehicle
 from concio.model.fill import Fill
@@ -18,6 +19,8 @@ LIGHT, HEAVY = 5.0, 40.0
 """Unit weights of fill and road layers lie between these [kN/m3]; ballast, asphalt and concrete have 16 to 25."""
 DEEP = 20.0
 """Larger depths of cover are reported [m]."""
+FAR = 200.0
+"""Axles that follow each other at larger distances are reported [m]."""
 WIDER = 1e-6
 
 
@@ -27,7 +30,8 @@ def odd_crossing(model: Model) -> list[str]:
     if model.fill is not None:
         found += _fill(model.fill)
     if model.vehicle is not None:
-        found += [*_axles(model.vehicle), *_width(model, model.vehicle), *_everywhere(model.vehicle)]
+        found += [*_axles(model.vehicle), *_width(model, model.vehicle)]
+        found += [*_everywhere(model.vehicle), *_gaps(model.vehicle)]
     return found
 
 
@@ -77,6 +81,15 @@ def _everywhere(vehicle: Vehicle) -> list[str]:
         f"the uniform load of vehicle '{vehicle.name}' stands on the whole road here, and may help the bridge: "
         "'concio bridge' finds where it is unfavourable, and loaded in [vehicle] puts it there"
     ]
+
+
+def _gaps(vehicle: Vehicle) -> list[str]:
+    """Return a sentence where axles that follow each other are so far apart that a place may be in other units."""
+    places = sorted(a.at for a in vehicle.points)
+    gap = max((b - a for a, b in pairwise(places)), default=0.0)
+    if gap <= FAR:
+        return []
+    return [f"two axles of vehicle '{vehicle.name}' that follow each other are {gap:g} m apart: is that its unit?"]
 
 
 def _width(model: Model, vehicle: Vehicle) -> list[str]:

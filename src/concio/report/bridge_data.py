@@ -85,7 +85,7 @@ def _fill(page: BridgeReport, fill: Fill) -> list[tuple[str, str]]:
         ("passive", page.n(fill.passive_coefficient)),
         ("pressure", page.words["pressure_" + fill.pressure.replace(" ", "_")]),
         ("stiffness", page.unit("joint stiffness", fill.stiffness)),
-        ("spread", f"{rule.name}: {rule.source}" if rule.source else rule.name),
+        ("spread", f"{rule.name}: {page.told(rule.source)}" if rule.source else rule.name),
     ]
     return rows
 
@@ -102,7 +102,7 @@ def _vehicle(page: BridgeReport, vehicle: Vehicle) -> list[tuple[str, str]]:
     rows = [("vehicle", vehicle.name), ("axles", "; ".join(told))]
     if vehicle.loaded is not None and vehicle.uniform:
         rows.append(("loaded", loaded_words(vehicle.loaded, page.said)))
-    rows += [(key, getattr(vehicle, key)) for key in ("source", "assumed") if getattr(vehicle, key)]
+    rows += [(key, page.told(getattr(vehicle, key))) for key in ("source", "assumed") if getattr(vehicle, key)]
     return [*rows, ("dynamic", f"{page.n(vehicle.dynamic)}; {page.n(vehicle.factor)}")]
 
 

@@ -23,6 +23,7 @@ from concio.report.html_parts import figure_html, page_html
 from concio.report.language import words_of
 from concio.verdict.bridge_verdict import bridge_verdict, heaviest_words
 from concio.verdict.bridge_words import Words
+from concio.verdict.italian import italian
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -95,6 +96,12 @@ class BridgeReport:
         """Return a text of the language."""
         return self.words[key].format(**values)
 
+    def told(self, text: str) -> str:
+        """Return a sentence that is made in English in the language of the report, as far as it is known."""
+        if self.language == "en":
+            return text
+        return " ".join(self.said.local(p.text) if p.language == "it" else p.text for p in italian(text))
+
     def html(self) -> str:
         """Return the page."""
         title = self.found.model.title or self.words["title"]
@@ -116,7 +123,8 @@ class BridgeReport:
         facts: list[tuple[str, Sequence[str]]] = [
             ("asked", (told.question.asked,)),
             ("acts", [self.said.acting(v) for v in told.question.loads(self.units)]),
-            ("limits", told.limits), ("not_checked", told.unchecked), ("attention", told.attention),
+            ("limits", told.limits), ("not_checked", told.unchecked),
+            ("attention", [self.told(line) for line in told.attention]),
         ]  # fmt: skip
         rows = "".join(f"<tr><th>{escape(w[key])}</th><td>{'<br>'.join(escape(v) for v in lines)}</td></tr>"
                        for key, lines in facts if lines)  # fmt: skip
@@ -250,7 +258,7 @@ class BridgeReport:
         told = self.words["mexe_none"] if math.isnan(m.axle) else self.say(
             "mexe_text", axle=self.unit("force", m.axle), provisional=self.unit("force", m.provisional),
             profile=self.n(m.profile), factors=self.n(m.factors))  # fmt: skip
-        lines = "".join(f"<li>{escape(line)}</li>" for line in m.limits)
+        lines = "".join(f"<li>{escape(self.told(line))}</li>" for line in m.limits)
         return self.section("mexe", f"<p>{escape(told)}</p><ul>{lines}</ul>")
 
     def film(self) -> str:

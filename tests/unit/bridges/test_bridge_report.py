@@ -6,6 +6,7 @@ import csv
 import re
 import tomllib
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cache
 from html.parser import HTMLParser
 from importlib.resources import files
@@ -16,8 +17,13 @@ from test_bridge_assessment import small, written
 
 import concio
 from commands import run
+from concio.analysis.bridges.mexe import mexe
+from concio.model.plausibility import implausible
+from concio.model.road.spread import spread_rules
+from concio.model.road.vehicles import vehicles
 from concio.report.bridge_page import BridgeReport
 from concio.verdict.bridge_verdict import bridge_lines
+from concio.verdict.italian import catalogue
 
 
 @pytest.fixture(scope="module")
@@ -88,7 +94,8 @@ def test_the_report_tells_every_datum_that_was_given_and_has_no_english_in_itali
     for datum in ("luci nette 3 m", "frecce 0,75 m", "0,215 m", "conci di un anello 12", "blocchi rigidi, 22 kN/m3",
                   "ricoprimento in chiave 0,3 m", "riempimento 20 kN/m3", "costante; peso proprio, "):  # fmt: skip
         assert datum in re.sub(r"\s+", " ", text), datum
-    for english in ("self-weight", "constant;", "the whole width", "fill unit weight", "no_equilibrium"):
+    for english in ("self-weight", "constant;", "the whole width", "fill unit weight", "no_equilibrium",
+                    "are taken as", "to each side"):
         assert english not in text
     film = page[page.index("<section id=film>") :]
     begin = int(re.findall(r'<input [^>]*value="(\d+)"', film)[0])
@@ -106,6 +113,22 @@ def test_a_vehicle_without_axles_is_told_by_its_load_along_the_road() -> None:
     assert "1995" not in told
     assert found.summary()["axle"] is None
     assert found.summary()["vehicle"]["uniform_load"] == pytest.approx(133.0)
+
+
+def test_what_the_library_and_the_formula_say_is_known_in_italian() -> None:
+    """Sources that cite a code stay as they are."""
+    said = [v.assumed for v in vehicles().values() if v.assumed]
+    said += [rule.source for name, rule in spread_rules().items() if name in ("none", "uniform 1:2")]
+    said += [line for span, rise, ring, depth in ((1.0, 0.1, 0.4, 0.4), (6.0, 2.0, 1.0, 1.0), (6.0, 2.0, 0.4, 0.4))
+             for line in mexe(span, rise, 0.7 * rise, ring, depth).limits]  # fmt: skip
+    axles = concio.Axle(0.0, 11.5), concio.Axle(900.0, 1.0)
+    crowded = concio.with_vehicle(small(), concio.Vehicle("x", axles, width=3.0))
+    heavy = concio.with_vehicle(small(), concio.Vehicle("x", (concio.Axle(0.0, 9000.0),)))
+    lane = concio.with_vehicle(small(), replace(concio.find_vehicle("LM71"), position=1.0), whole=False)
+    said += [line for model in (crowded, heavy, lane) for line in implausible(model)]
+    assert len(said) > 15
+    for text in said:
+        assert catalogue("concio.verdict").whole(text) is not None, text
 
 
 def test_both_languages_have_the_same_words() -> None:

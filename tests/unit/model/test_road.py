@@ -180,6 +180,7 @@ def test_width_by_rule_is_reported_and_at_most_that_of_the_bridge() -> None:
     ("change", "words"),
     [
         (("[0.0, 90.0]", "[0.0, 11.5]"), "if tonnes were meant, write '11.5 tf'"),
+        (("[0.0, 90.0]", "[0.0, 90.0], [1300, 90.0]"), "1300 m apart"),
         (("[0.0, 90.0]", "[0.0, 112800]"), "if newtons were meant, write '112800 N'"),
         (("width = 2.0", "width = 1.5"), "is 1.8 m wide, the structure below it 1.5 m"),
         (("unit_weight = 19.0", "unit_weight = 1900"), "'1900 kg/m3'"),
