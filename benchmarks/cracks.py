@@ -1,12 +1,14 @@
 """Random synthetic cracks: how often the cause is found, whether intervals hold, what is reported as ambiguous.
 
-    python benchmarks/cracks.py [--cases 200] [--seed 0] [--first 0] [--wrong] [--minutes 60]
+    python benchmarks/cracks.py [--cases 200] [--seed 0] [--first 0] [--wrong] [--minutes 60] [--each 120]
+                                [--family "flat arch"] [--family portal]
 
 Every case draws a structure (flat arch, round arch, portal of three piers with lintels and courses), one or two of its
 candidate motions with random sizes, and up to eight measurements: openings at joints that are open, two joints that are
 closed, a level. The readings come from a path of 64 steps, the diagnosis takes its own; Gaussian errors of 0.5 mm
 are added. With ``--wrong`` one opening is made wrong (its unit or its place) or a level (its sign), and the share
-named is reported. One line a case, the table at the end, or after so many minutes; processor seconds.
+named is reported. One line a case, the table at the end, or after so many minutes; processor seconds. A case that
+takes more than ``--each`` processor seconds is stopped between two choices of motions, and counted as such.
 """
 
 from __future__ import annotations
@@ -14,6 +16,7 @@ from __future__ import annotations
 import argparse
 import time
 from collections import Counter
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -25,6 +28,7 @@ from concio.analysis.cracks.forward import Forward
 from concio.analysis.cracks.moved import moved_model
 from concio.analysis.cracks.observed import Reading, readings
 from concio.analysis.cracks.places import all_places
+from concio.problem.solution import Progress
 
 ERROR = 0.5e-3
 TRUE_STEPS = 64
@@ -185,6 +189,16 @@ def kind_of(case: Case, found: Diagnosis) -> str:
     return "missed"
 
 
+def until(moment: float) -> Callable[[Progress], None]:
+    """Return what stops a diagnosis once the processor time of this process has come to a moment [s]."""
+
+    def stop(_: Progress) -> None:
+        if time.process_time() > moment:
+            raise TimeoutError
+
+    return stop
+
+
 def main() -> None:
     """Print a line a case, and the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -193,20 +207,32 @@ def main() -> None:
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--wrong", action="store_true")
     parser.add_argument("--minutes", type=float, default=np.inf)
+    parser.add_argument("--each", type=float, default=np.inf)
+    parser.add_argument("--family", action="append", choices=FAMILIES)
     arguments = parser.parse_args()
     kinds: Counter[tuple[str, str]] = Counter()
-    seconds, named, asked, done, number = [], [], [], 0, arguments.first
+    seconds, named, asked, done, drawn, number = [], [], [], 0, 0, arguments.first
     within = np.zeros(2, dtype=int)
     started = time.monotonic()
     while done < arguments.cases and time.monotonic() - started < 60 * arguments.minutes:
-        case = draw(number, arguments.seed, arguments.wrong)
         number += 1
+        if FAMILIES[(number - 1) % len(FAMILIES)] not in (arguments.family or FAMILIES):
+            continue
+        drawn += 1
+        case = draw(number - 1, arguments.seed, arguments.wrong)
         if case is None:
             continue
         done += 1
         begin = time.process_time()
-        found = concio.diagnose(case.model, case.measurements, case.candidates, most=2, large=False)
-        seconds.append(time.process_time() - begin)
+        stop = until(begin + arguments.each)
+        try:
+            found = concio.diagnose(case.model, case.measurements, case.candidates, most=2, large=False, progress=stop)
+        except TimeoutError:
+            kinds[case.family, "stopped"] += 1
+            print(f"{number - 1} {case.family}: stopped after {time.process_time() - begin:.0f} s", flush=True)
+            continue
+        finally:
+            seconds.append(time.process_time() - begin)
         kind = kind_of(case, found)
         kinds[case.family, kind] += 1
         true = set(np.flatnonzero(case.truth).tolist())
@@ -228,7 +254,7 @@ def main() -> None:
     print("\n| family | " + " | ".join(sorted({k for _, k in kinds})) + " |")
     for family in FAMILIES:
         print(f"| {family} | " + " | ".join(str(kinds[family, k]) for k in sorted({k for _, k in kinds})) + " |")
-    print(f"{done} cases of {number - arguments.first} drawn; {np.mean(seconds):.1f} s a case, {np.max(seconds):.1f} s "
+    print(f"{done} cases of {drawn} drawn; {np.mean(seconds):.1f} s a case, {np.max(seconds):.1f} s "
           f"at most\nintervals hold {within[0]} of {within[1]} ({100 * within[0] / within[1]:.1f} %)")  # fmt: skip
     if named:
         print(f"wrong measurements named: {sum(named)} of {len(named)}; not passed in silence: {sum(asked)}")

@@ -105,7 +105,7 @@ class _Words:
         """Return what was asked, under which loads."""
         found = self.found
         asked = self.say(
-            "asked", k=len(found.candidates), most=found.most, n=len(found.measurements),
+            "asked", k=len(found.candidates), most=min(found.most, len(found.candidates)), n=len(found.measurements),
             confidence=f"{100 * found.confidence:g}",
         )  # fmt: skip
         factors = None if found.best is None else found.best.prediction.factors

@@ -106,6 +106,7 @@ def test_units_of_a_file_are_those_of_its_survey(tmp_path: Path) -> None:
     [
         ("body_a", "block", "unknown column 'block'"),
         ("name,", "kind,", "is there twice"),
+        ("value [mm]", "value (mm)", "units stand in square brackets: value [mm]"),
         ("9.7", "9,7", "values were expected"),
         ("9.7", "nine", "line 2, value: 'nine' is not a number"),
         ("9.7", "9.7 kN", "is not a length"),

@@ -117,6 +117,8 @@ def _rows(text: str, where: str) -> Iterator[tuple[str, dict[str, str], dict[str
             if name not in COLUMNS:
                 msg = f"unknown column '{cell}'"
                 hint = "columns are separated by commas" if ";" in cell else closest(name, COLUMNS, names="columns")
+                if cell.split("(")[0].strip() in COLUMNS:
+                    hint = f"units stand in square brackets: {cell.replace('(', '[').replace(')', ']')}"
                 raise InputError(msg, where=where, hint=hint)
             if name in units:
                 msg = f"the column '{name}' is there twice"

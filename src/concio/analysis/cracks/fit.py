@@ -22,7 +22,9 @@ from concio.analysis.cracks.forward import Forward, Prediction
 Array = np.ndarray
 
 MOST_STEPS = 8
-"""Predictions along one descent, those for derivatives not counted."""
+"""Predictions along one descent, those for derivatives not counted..."""
+LONGEST = 24
+"""...and along one that has come near to what is allowed: a cause must not be turned down before its descent ends."""
 FLAT = 0.02
 """Decrease of the misfit below which a descent ends."""
 SLOW = 0.03
@@ -235,7 +237,7 @@ class Fitter:
         kept = here.kept
         radius, steps, refreshed = TRUST, 0, False
         reach = np.maximum(REACH * self.scale[own], np.abs(here.motions[own]))
-        while steps < MOST_STEPS:
+        while steps < (LONGEST if here.misfit <= DISTANT * allowed else MOST_STEPS):
             if beaten is not None and steps >= TRIED and not _below(here, beaten):
                 break
             s = here.motions[own]
@@ -260,7 +262,7 @@ class Fitter:
             if there.misfit < here.misfit - 0.1 * gain:
                 rate = there.misfit / here.misfit
                 here, refreshed, radius = there, False, 2.0 * radius
-                if float(without_each(here).min()) * rate ** (MOST_STEPS - steps) > DISTANT * allowed:
+                if float(without_each(here).min()) * rate ** max(MOST_STEPS - steps, 0) > DISTANT * allowed:
                     break  # at this rate it comes nowhere near
                 continue
             if not refreshed:

@@ -82,7 +82,8 @@ def moved_model(model: Model, candidates: Sequence[Candidate], scale: Array) -> 
     twice = next((n for n in names if names.count(n) > 1), None)
     if not names or twice is not None:
         msg = f"two candidates are called '{twice}'" if names else "there is no candidate: nothing may have moved"
-        hint = "give each a name of its own" if names else "for example Candidate('pier sinks', body='ground', ...)"
+        form = "[[survey.candidates]] in a file, Candidate('pier sinks', ...) in Python"
+        hint = "give each a name of its own" if names else form
         raise InputError(msg, where="candidates", hint=hint)
     known = model.load_groups
     loaded = {load.group for load in model.loads}
