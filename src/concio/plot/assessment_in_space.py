@@ -46,6 +46,8 @@ def model_in_space(model: Model, ax: Axes | None = None) -> Axes:
     for place in ("center", "left", "right"):
         ax.set_title("", loc=place)
     _dimensions(ax, model)
+    if own:
+        ax.set_position((0.01, 0.01, 0.98, 0.98))
     if own:  # names are read on paper, where the picture is half a page wide
         assert isinstance(ax.figure, Figure)
         ax.figure.set_size_inches(*ON_PAPER)

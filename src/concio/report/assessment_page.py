@@ -42,6 +42,8 @@ if TYPE_CHECKING:
 UNITS = {"weight": "-", "pressure": "kN/m2", "traction": "kN/m2", "point": "kN", "body": "kN/m3"}
 
 
+BESIDE_LOADS = 30
+"""The picture of a wall of more blocks has the width of the page, so that their names can be read."""
 IN_DETAIL = 1
 """Mechanisms that are printed in detail unless all are asked for."""
 
@@ -107,16 +109,22 @@ class AssessmentReport(Texts):
         parts.append(f"<footer>{footer}</footer>")
         return page_html(title, typeset("".join(parts)), language=self.language, kind="assessment")
 
+    @cached_property
+    def detailed(self) -> list[int]:
+        """Which mechanisms are printed in detail: those that decide."""
+        every = self.found.mechanisms
+        lowest = (min(range(len(every)), key=lambda k: every[k].zeta_at(v), default=0) for v in self.found.levels)
+        return sorted({0, *lowest})[:IN_DETAIL]
+
     def mechanisms(self) -> list[str]:
         """Return what decides in detail, what has a name or is below one by its checks; on request all in detail."""
         mine, made = self.found.arguments.get("mechanisms") or {}, []
         every = self.found.mechanisms
-        lowest = (min(range(len(every)), key=lambda k: every[k].zeta_at(v), default=0) for v in self.found.levels)
-        shown = sorted({0, *lowest})[:IN_DETAIL]
+        shown = self.detailed
         for k, m in enumerate(every):
             if self.head.full or k in shown:
                 made.append(mechanism_html(self, m, k + 1, self.found.curve))
-            elif m.name in mine or m.least < 1.0:
+            elif m.section is None and (m.name in mine or m.least < 1.0):  # of strips there is a table
                 made.append(brief_html(self, m, k + 1))
         if len(every) > len(shown) and not self.head.full:
             made.append(f"<p class=note>{self.say('not_full')}</p>")
@@ -125,7 +133,8 @@ class AssessmentReport(Texts):
     def header(self, title: str) -> str:
         """Return the head: title, project, author, date, code."""
         rows = [(key, getattr(self.head, key)) for key in ("project", "place", "author", "revision", "date")]
-        rows = [(self.words[key], value) for key, value in rows if value]
+        fill = self.words["to_fill"]
+        rows = [(self.words[key], value or fill) for key, value in rows if value or key in ("revision", "date")]
         rows.append((self.words["code"], f"{self.found.site.rules.name}"))
         facts = "".join(f"<tr><th>{escape(k)}</th><td>{escape(v)}</td></tr>" for k, v in rows)
         return (
@@ -258,9 +267,11 @@ class AssessmentReport(Texts):
         if model.dim == 3:
             reach = np.ptp(np.vstack([np.asarray(b.vertices) for b in model.free_bodies]), axis=0)
             text += " " + self.say("overall", size=" x ".join(self.n(float(v)) for v in reach))
-        drawn = self.figure(model_figure(self.found), "figure_model", "tall" if model.dim == 2 else "solid")
+        wide = model.dim == 2 and free > BESIDE_LOADS
+        drawn = self.figure(model_figure(self.found), "figure_model", "solid" if wide or model.dim == 3 else "tall")
+        side = "" if wide else "even" if model.dim == 3 else "side"
         return (
-            f"<section id=model><h2>{self.say('model')}</h2><p>{text}</p><div class=side>{drawn}<div>"
+            f"<section id=model><h2>{self.say('model')}</h2><p>{text}</p><div class=\"{side}\">{drawn}<div>"
             f"<h3>{self.say('loads')}</h3>{self.table(head, rows, 2)}{ties}</div></div></section>"
         )
 
@@ -269,7 +280,7 @@ class AssessmentReport(Texts):
         w, found = self.words, self.found
         rows = []
         for k, m in enumerate(found.mechanisms, 1):
-            if m.section is not None and k > 1 and m.least >= 1.0:
+            if m.section is not None and k - 1 not in self.detailed and not self.head.full:
                 continue  # the table of strips holds it
             settled = m.complete or m.least < 1
             verdict = self.verdict(m.least, m.least >= 1) if settled else self.say("unchecked")

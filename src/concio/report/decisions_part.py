@@ -46,12 +46,14 @@ def _decisions(t: Texts, found: Assessment) -> list[tuple[str, str, str]]:
     every = ", ".join(found.site.asked_by_code)
     factors = {k: float(v) for k, v in rules.tables["knowledge"].items() if k != "clause"}
     q = sorted({float(rules.tables["levels"][v]["q"]) for v in found.levels if "q" in rules.tables["levels"][v]})
+    crushing = found.confidence_by == "crushing" or not all(
+        found.model.laws[rule.law].compressive_strength is not None for rule in found.model.rules)  # fmt: skip
     rows: list[tuple[str, str, str]] = [
         ("levels", ", ".join(found.levels), every),
         ("direction", ", ".join(t.way(v) for v in found.bounds),
          w["all_ways" if asked.get("direction") else "by_default"]),
         ("knowledge", found.knowledge, "LC1"),
-        ("confidence", t.n(found.confidence), t.n(factors[found.knowledge])),
+        ("confidence", t.n(found.confidence), t.n(max(factors.values()) if crushing else factors[found.knowledge])),
         ("accept_linear", w["decide_linear" if asked.get("accept_linear") else "decide_both"], w["decide_both"]),
         ("curve", w[f"curve_{found.curve}"], w["curve_followed"]),
         ("participation", _share(t, asked.get("participation")), w["decide_e_star"]),

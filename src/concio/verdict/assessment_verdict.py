@@ -232,9 +232,12 @@ class _Words:
         if worst is None:
             return self.say("proof_none")
         flow = worst.found.flow.replace(" ", "_")
-        bound = worst.found.associated
-        if flow == "Coulomb":
-            bound = self.found.bounds.get(worst.direction, bound)
+        bound, whole = worst.found.associated, self.found.bounds.get(worst.direction)
+        if flow == "Coulomb" and whole is not None:
+            if whole.upper >= worst.multiplier:
+                bound = whole
+            else:  # it decides by its zeta_E, while the whole begins to move at less
+                flow = "Coulomb_part"
         return self.say(f"proof_{flow}", name=self.name(worst.name), way=self.way(worst.direction), upper=bound.upper,
                         gap=_gap(bound.gap))  # fmt: skip
 
@@ -253,16 +256,21 @@ class _Words:
         worst = found.worst
         own = worst is not None and worst.name in (found.arguments.get("mechanisms") or {})
         if worst is not None and worst.found.moving is not None and not own:
-            limits.append(self.say("part", bodies="; ".join(b.label for b in worst.mechanics.blocks[:MOST_NAMES])))
+            bodies = "; ".join(b.label for b in worst.mechanics.blocks[:MOST_NAMES])
+            key = "part" if worst.name == "weakest of all" else "part_decides"
+            limits.append(self.say(key, bodies=bodies, name=self.name(worst.name)))
         limits += [self.say("brittle", tie=t.name, force=t.strength) for t in found.model.ties if t.strength < t.most
                    and t.yield_force is not None]  # fmt: skip
-        for m in found.mechanisms[:MOST_NAMES]:
-            limits += [
-                self.say("corner", name=self.name(m.name), level=o.level, zeta=o.zeta, ratio=o.check.ratio)
-                for o in m.outcomes
-                if o.check.kind == "displacement" and not o.check.at_rest and math.isfinite(o.zeta)
-                and o.check.a_g >= o.check.least and abs(o.zeta / o.check.ratio - 1.0) > APART
-            ]  # fmt: skip
+        apart = [
+            (m, o) for m in found.mechanisms for o in m.outcomes
+            if o.check.kind == "displacement" and not o.check.at_rest and math.isfinite(o.zeta)
+            and o.check.a_g >= o.check.least and abs(o.zeta / o.check.ratio - 1.0) > APART
+        ]  # fmt: skip
+        if apart:
+            m, o = apart[0]
+            more = self.say("corner_more", n=len(apart) - 1) if len(apart) > 1 else ""
+            limits.append(self.say("corner", name=self.name(m.name), level=o.level, zeta=o.zeta,
+                                   ratio=o.check.ratio) + more)  # fmt: skip
         limits += [
             self.say("cut", name=self.name(m.name), way=self.way(m.direction), d=float(m.followed.end),
                      reason=self.reason(m.followed.reason))

@@ -31,6 +31,11 @@ EN = {
     "friction and flow recomputed from the assembly. What is proved beside it is an upper bound: no collapse under "
     "push {way} lies above {upper} (associated limit over all motions, duality gap {gap}). That nothing begins to "
     "move below alpha_0 is not proved: no load was carried up to it in steps.",
+    "proof_Coulomb_part": "alpha_0 of '{name}' is that of a collapse state of Coulomb friction in which the other "
+    "blocks stand, with equilibrium, friction and flow recomputed from the assembly. What is proved beside it is an "
+    "upper bound: no such collapse of these blocks under push {way} lies above {upper} (associated limit of their "
+    "motions, duality gap {gap}). That nothing begins to move below alpha_0 is not proved: no load was carried up to "
+    "it in steps.",
     "proof_associated": "alpha_0 of '{name}' is an upper bound only: the associated limit, with a duality gap of "
     "{gap}; no collapse state of Coulomb friction was found.",
     "sought": "searches made: {sought}, of which {named} of named mechanisms and {parts} in other parts of the "
@@ -45,11 +50,14 @@ EN = {
     "what_changes": "other lines",
     "part": "the weakest of all is one in which only some blocks move, {bodies}; the search among all motions ended "
     "at a larger multiplier",
+    "part_decides": "the mechanism that decides, '{name}', is one in which only some blocks move, {bodies}; all "
+    "motions were searched as well",
     "brittle": "tie '{tie}' breaks before it yields: its force at break, {force} kN, is used instead of its yield "
     "force",
     "corner": "'{name}', {level}: zeta_E = {zeta} is a ratio of accelerations, capacity over demand in "
     "displacements is {ratio}: as a_g is scaled the corner periods move with it, so that the displacement demanded "
     "does not grow like a_g",
+    "corner_more": "; the same is true of {n} other values of zeta_E",
     "cut": "the curve of '{name}', push {way}, is cut at {d} m of its control point: {reason}; its zeta_E ignores what "
     "lies beyond",
     "strips": "out of its plane the facade was searched in {n} strips, cut from the drawing and free at their sides "
@@ -128,6 +136,11 @@ IT = {
     "attrito e flusso ricalcolati dal modello assemblato. Dimostrato accanto è un limite superiore: nessun collasso "
     "con spinta {way} sta sopra {upper} (limite associato fra tutti i moti, scarto di dualità {gap}). Che nulla si "
     "muova sotto alpha_0 non è dimostrato: nessun carico è stato fatto crescere a passi fino a esso.",
+    "proof_Coulomb_part": "alpha_0 di «{name}» è quello di uno stato di collasso con attrito di Coulomb in cui gli "
+    "altri blocchi restano fermi, con equilibrio, attrito e flusso ricalcolati dal modello assemblato. Dimostrato "
+    "accanto è un limite superiore: nessun collasso di questi blocchi con spinta {way} sta sopra {upper} (limite "
+    "associato dei loro moti, scarto di dualità {gap}). Che nulla si muova sotto alpha_0 non è dimostrato: nessun "
+    "carico è stato fatto crescere a passi fino a esso.",
     "proof_associated": "alpha_0 di «{name}» è solo un limite superiore: quello associato, con uno scarto di "
     "dualità di {gap}; non è stato trovato alcuno stato di collasso con attrito di Coulomb.",
     "sought": "ricerche fatte: {sought}, di cui {named} di meccanismi con nome e {parts} in altre parti della "
@@ -142,11 +155,14 @@ IT = {
     "what_changes": "altre linee",
     "part": "il più debole di tutti è uno in cui si muovono solo alcuni blocchi, {bodies}; la ricerca fra tutti i "
     "moti finiva a un moltiplicatore maggiore",
+    "part_decides": "il meccanismo che decide, «{name}», è uno in cui si muovono solo alcuni blocchi, {bodies}; anche "
+    "tutti i moti sono stati esaminati",
     "brittle": "la catena «{tie}» si rompe prima di snervarsi: si considera la forza alla rottura, {force} kN, non "
     "quella di snervamento",
     "corner": "«{name}», {level}: zeta_E = {zeta} è un rapporto di accelerazioni, capacità su domanda in "
     "spostamento vale {ratio}: scalando a_g si spostano i periodi dello spettro, e lo spostamento richiesto non "
     "cresce come a_g",
+    "corner_more": "; lo stesso vale per altri {n} valori di zeta_E",
     "cut": "la curva di «{name}», spinta {way}, è troncata a {d} m del punto di controllo: {reason}; il suo zeta_E "
     "trascura quanto segue",
     "strips": "fuori dal piano la facciata è stata esaminata in {n} strisce, tagliate dal disegno e libere ai lati "

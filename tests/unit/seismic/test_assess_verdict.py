@@ -20,6 +20,7 @@ from concio import Assessment, JointLaw, Load, Model, Polyhedron, Rigid, Tie
 from concio.analysis.seismic.tie_history import TieHistory, together
 from concio.analysis.seismic.variations import tie_force
 from concio.contact.applied import sideways
+from concio.display import number
 from concio.errors import InputError, NoEquilibriumError
 from concio.report.assessment_page import AssessmentReport
 from concio.verdict.assessment_verdict import _gap, grounds
@@ -321,6 +322,20 @@ def test_zeta_beside_capacity_over_demand_has_its_sentence() -> None:
     check = found.worst.decisive.check  # type: ignore[union-attr]
     assert abs(found.zeta / check.ratio - 1) > 0.01
     assert any("is a ratio of accelerations" in line for line in found.verdict.limits)
+
+
+def test_a_part_that_decides_above_the_bound_of_the_whole_has_a_bound_of_its_own() -> None:
+    """What decides by zeta_E may begin to move later than the whole: the bound of the whole says nothing of it."""
+    found = assessed(overturning(3, friction=0.08), levels=["SLV"])
+    assert found.worst is not None
+    assert found.worst.found.flow == "Coulomb"
+    assert "associated limit over all motions" in found.verdict.proof
+    bounds = {way: replace(bound, upper=0.5 * found.worst.multiplier) for way, bound in found.bounds.items()}
+    proof = replace(found, bounds=bounds).verdict.proof
+    assert "no such collapse of these blocks" in proof
+    assert f"lies above {number(found.worst.found.associated.upper, 4)} " in proof
+    named = replace(found, mechanisms=(replace(found.worst, name="above z = 2 m"),))
+    assert not any(line.startswith("the weakest of all is one") for line in named.verdict.limits)
 
 
 def test_what_only_friction_locks_is_left_open() -> None:

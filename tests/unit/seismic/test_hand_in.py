@@ -138,6 +138,14 @@ def test_a_linear_check_that_is_met_decides_only_where_the_author_accepts_it() -
     assert not strong.decided_by(strong.checks[0])
 
 
+def test_revision_and_date_have_a_place_where_they_are_not_given() -> None:
+    found = concio.assess(overturning(2), site=site(), direction="left", levels=["SLD"])
+    for head, cells in ((Head(), ["_" * 16] * 2), (Head(revision="B", date="1 May"), ["B", "1 May"])):
+        page = AssessmentReport(found, head=head).html()
+        rows = dict(re.findall(r"<tr><th>(revision|date)</th><td>([^<]*)</td>", page.partition("</header>")[0]))
+        assert [rows["revision"], rows["date"]] == cells
+
+
 def test_what_was_covered_is_counted_and_named() -> None:
     found = concio.assess(overturning(4), site=site(), mechanisms={"top": ["c4"]})
     rows = {c.kind: c for c in found.covered}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import re
 from dataclasses import replace
 from typing import Any
 
@@ -184,6 +185,11 @@ def test_the_least_of_plane_and_strips_decides_and_each_is_reported() -> None:
         page = AssessmentReport(found, language=language).html()
         assert word in page
         assert ("out of plane" in page.lower()) == (language == "en")
+        aside = {"en": "out of plane", "it": "fuori dal piano"}[language]
+        assert not any(aside in title for title in re.findall(r"class=brief[^>]*><h3>([^<]*)", page))
+        start = page.index("<section id=search>")
+        assert page.count(f">{aside}:", start, page.index("</section>", start)) <= 2  # those that decide
+    assert sum("ratio of accelerations" in line for line in found.verdict.limits) <= 1
 
 
 def test_left_to_the_author_or_pushed_by_a_group_it_is_not_searched() -> None:

@@ -65,6 +65,8 @@ class Found:
     needs_friction : bool
         Of what is locked: whether only friction holds it, so that the associated programme, in which joints open as
         they slide, does not show what Coulomb friction holds.
+    state : CollapseState or None
+        That of Coulomb friction whose multiplier counts, of the bodies that were let move.
     """
 
     associated: LimitLoad
@@ -75,6 +77,7 @@ class Found:
     mechanics: Mechanics | None
     moving: tuple[int, ...] | None = None
     needs_friction: bool = False
+    state: CollapseState | None = None
 
     @property
     def locked(self) -> bool:
@@ -232,7 +235,7 @@ class Mechanisms:
     def _of_state(self, columns: Array, rows: Array, bound: LimitLoad, state: CollapseState) -> Found:
         velocity, forces = self._spread(columns, rows, state.velocity, state.normal_force)
         made = mechanics_of(self.assembly, velocity, forces)
-        return Found(bound, state.multiplier, "Coulomb", velocity, forces, made)
+        return Found(bound, state.multiplier, "Coulomb", velocity, forces, made, state=state)
 
     def _locked(self, columns: Array, rows: Array, problem: ContactProblem, bound: LimitLoad) -> Found:
         """Return what happens to a push of which the associated programme carries any multiple.

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from concio.analysis.coulomb_sensitivity import coulomb_sensitivity
 from concio.analysis.parameters import parameters_of
 from concio.analysis.seismic.directions import Direction, pushes
 from concio.analysis.seismic.local_mechanism import LocalMechanism
@@ -20,6 +21,9 @@ from concio.solvers.statics.associated_limit import associated_limit
 
 Array = np.ndarray
 
+SAME = 1e-6
+"""Relative difference below which alpha_0 is the multiplier of its state: no hinge is set back, no tie yields later."""
+
 NEAR = 0.01
 """Largest relative difference of alpha_0 with hinges set back and the multiplier of joints that crush at points."""
 
@@ -27,7 +31,7 @@ NEAR = 0.01
 def sensitivity_of_mechanism(
     model: Model, m: LocalMechanism, live: str | Sequence[str] | None = None
 ) -> Sensitivity | None:
-    """Return the derivatives of alpha_0 of a mechanism; None where a joint slides in it.
+    """Return the derivatives of alpha_0 of a mechanism; None where it depends on more than the forces of its state.
 
     Parameters
     ----------
@@ -37,8 +41,6 @@ def sensitivity_of_mechanism(
     live : str or sequence of str, optional
         As it was given to the assessment.
     """
-    if m.found.flow != "no sliding":
-        return None
     groups = (live,) if isinstance(live, str) else tuple(live or ())
 
     def loaded(changed: Model) -> tuple[ContactProblem, Array]:
@@ -47,10 +49,31 @@ def sensitivity_of_mechanism(
         return seek.loaded(m.found.moving)
 
     here = loaded(model)
+    if m.found.flow != "no sliding":
+        return _of_sliding(here, m, loaded, model, groups)
     limit = associated_limit(*here)
     if limit.mechanism is None or not abs(limit.multiplier - m.multiplier) <= NEAR * abs(m.multiplier):
         return None
     return sensitivity_of(here, loaded, limit, parameters_of(model, groups))
+
+
+def _of_sliding(
+    here: tuple[ContactProblem, Array],
+    m: LocalMechanism,
+    loaded: Callable[[Model], tuple[ContactProblem, Array]],
+    model: Model,
+    groups: Sequence[str],
+) -> Sensitivity | None:
+    """Return the derivatives of alpha_0 of a mechanism whose joints slide; None where it is not a Coulomb state."""
+    if m.found.flow != "Coulomb":
+        return None
+    problem, push = here
+    state = m.found.state
+    if state is None or len(state.velocity) != problem.unknowns:
+        return None
+    if not abs(state.multiplier - m.multiplier) <= SAME * abs(m.multiplier):
+        return None
+    return coulomb_sensitivity(problem, push, state, loaded, parameters_of(model, groups))
 
 
 def way_of(name: str) -> Direction:
