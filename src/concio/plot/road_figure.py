@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 Array = np.ndarray
 
 EARTH, LAYER = "#E9DFC8", "#CFC6B4"
+NEAR = 0.06
+"""Axles nearer to each other than this share of the road have their loads written upwards."""
 
 
 def road_box(model: Model) -> Array:
@@ -47,6 +49,8 @@ def draw_vehicle(ax: Axes, model: Model, position: float, direction: str = "", *
     road = ground_of(model)[1]
     low, high = float(road.line[0, 0]), float(road.line[-1, 0])
     size = heights * (high - low)
+    places = sorted(x for x, *_, stretch in model.vehicle.footprints(position, direction) if not stretch)
+    turned = 90 if min(np.diff(places), default=np.inf) < NEAR * (high - low) else 0
     heaviest = model.vehicle.heaviest.load * model.vehicle.dynamic * model.vehicle.factor
     for x, length, load, stretch in model.vehicle.footprints(position, direction):
         a, b = max(x - length / 2, low), min(x + length / 2, high)
@@ -60,4 +64,5 @@ def draw_vehicle(ax: Axes, model: Model, position: float, direction: str = "", *
                         arrowprops={"arrowstyle": "-|>", "color": style.LOAD.colour, "lw": 1.4})  # fmt: skip
             ax.plot([x - length / 2, x + length / 2], [y0, y0], color=style.LOAD.colour, lw=3, zorder=5,
                     solid_capstyle="butt")  # fmt: skip
-            ax.annotate(f"{load:.4g}", (x, y0 + tall), ha="center", va="bottom", fontsize=7, color=style.LOAD.colour)
+            ax.annotate(f"{load:.4g}", (x, y0 + tall), ha="center", va="bottom", fontsize=7, color=style.LOAD.colour,
+                        rotation=turned)  # fmt: skip

@@ -12,6 +12,7 @@ from html.parser import HTMLParser
 from importlib.resources import files
 from pathlib import Path
 
+import numpy as np
 import pytest
 from test_bridge_assessment import small, written
 
@@ -139,6 +140,16 @@ def test_both_languages_have_the_same_words() -> None:
 def test_a_support_that_settles_opens_joints(found: concio.BridgeResult) -> None:
     assert found.settled is not None
     assert found.settled.open_joints > found.service.open_joints
+
+
+def test_soil_at_its_largest_pressure_is_no_joint_that_crushes(found: concio.BridgeResult) -> None:
+    """Joints without strength never crush; soil that the arch is pushed into presses with all that it can."""
+    assert found.settled is not None
+    state = found.settled.result
+    pressed = state.ties.tension
+    caps = np.array([t.yield_force for t in state.model.ties])
+    assert (pressed > caps * (1 - 1e-9)).any()
+    assert found.settled.crushed == 0
 
 
 def test_the_command_writes_report_curve_and_numbers(tmp_path: Path) -> None:

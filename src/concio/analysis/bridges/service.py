@@ -12,6 +12,7 @@ from concio.analysis.step import solve
 from concio.errors import InputError
 from concio.model.actions import Support
 from concio.model.model import Model
+from concio.problem.pair_state import PairState
 from concio.problem.solution import Status
 from concio.representation import short_repr
 
@@ -37,7 +38,8 @@ class ServiceState:
     status : Status
     result : Result
     open_joints, slipping, crushed : int
-        Joints that are open over a part of their length, that slip, and pairs at their compressive strength.
+        Joints that are open over a part of their length, that slip, and pairs of joints at their strength;
+        soil that presses with all that it can is none of them.
     largest_pressure : float
         Largest mean pressure on the loaded part of a joint, N / (2 (l/2 - |e|) b) [kN/m2]; ``inf`` where a joint is
         pressed at its edge alone, which only joints with a strength can tell.
@@ -86,10 +88,11 @@ def service_state(model: Model, settled: Mapping[str, float] | None = None) -> S
     pressure = np.where(loaded, np.where(edge, np.inf, joints.N / np.where(edge, 1.0, strip * width)), 0.0)
     ties = found.ties
     soil = float(sum(ties.tension[k] for k, t in enumerate(model.ties) if t.kind == "soil"))
-    states = found.contacts.states
+    of_joints = found.assembly.pairs.interface >= 0
+    crushed = int((found.contacts.states.code[of_joints] == PairState.CRUSHED).sum())
     return ServiceState(
         found.status, found, int((joints.open_share > OPEN).sum()), int(joints.slipping.sum()),
-        int((states.code == 3).sum()), float(pressure.max(initial=0.0)), _deflection(model, found), soil,
+        crushed, float(pressure.max(initial=0.0)), _deflection(model, found), soil,
     )  # fmt: skip
 
 
