@@ -18,6 +18,9 @@ RADIANS = 1.6
 """Friction angles up to this number of degrees are taken for radians, and refused."""
 DEEPEST = 100.0
 """No arch lies deeper under its road [m]."""
+COVER_OR_ROAD = (
+    "cover is the depth of road over the crown of the extrados; of a drawing, road in [bridge_drawing] names the layer"
+)
 
 
 @strict_class
@@ -145,7 +148,7 @@ class Fill:
         put = object.__setattr__
         if (self.cover is None) == (not self.road):
             msg = "one of cover and road is needed, and not both"
-            raise InputError(msg, where=where, hint="cover is the depth of road over the crown of the extrados")
+            raise InputError(msg, where=where, hint=COVER_OR_ROAD)
         if self.cover is not None:
             cover = quantity(self.cover, "length", where=f"{where}, cover")
             if not 0 < cover < math.inf:

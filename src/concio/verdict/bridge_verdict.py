@@ -249,10 +249,11 @@ def _limits(found: BridgeResult, w: Words) -> tuple[str, ...]:
         w.say("brackets", count=len(found.brackets)),
     ]  # fmt: skip
     worst = found.worst
-    line = ground_of(found.model)[1].line
+    surface, road = ground_of(found.model)
+    low, high = road.over(surface)
     times = found.vehicle.dynamic * found.vehicle.factor
     on_road = [load for x, _, load, stretch in found.vehicle.footprints(worst.position, worst.direction)
-               if not stretch and line[0, 0] <= x <= line[-1, 0]]  # fmt: skip
+               if not stretch and low <= x <= high]  # fmt: skip
     beside = worst.elsewhere + times * sum(a.load for a in found.vehicle.points) - sum(on_road)
     if beside > 1e-6 * found.vehicle.total:
         told.append(w.say("elsewhere", load=w.unit("force", beside, 4)))

@@ -123,6 +123,21 @@ def test_uniform_load_alone_is_worst_on_one_side() -> None:
     assert all(b < 1.9 or a > 1.1 for a, b in found.loaded)
 
 
+@pytest.mark.parametrize("vehicle", [LANE, Vehicle("lorry", (Axle(0.0, 60.0), Axle(-9.0, 40.0)))])
+def test_a_road_that_goes_on_beyond_the_masonry_changes_nothing(vehicle: Vehicle) -> None:
+    """What stands further out than the abutments reaches none of them; drawings have such roads."""
+    short = with_vehicle(small(), vehicle)
+    height = float(ground_of(short)[1].line[0, 1])
+    road = ((-40.0, height), (45.0, height))
+    long = with_vehicle(with_fill(without_fill(small()), replace(FILL, cover=None, road=road)), vehicle)
+    for x in (0.4, 0.7):
+        one, other = Sweep(short).at(x), Sweep(long).at(x)
+        assert one is not None
+        assert other is not None
+        assert other.multiplier == pytest.approx(one.multiplier, rel=1e-9)
+        assert (other.on_masonry, other.elsewhere) == pytest.approx((one.on_masonry, one.elsewhere))
+
+
 def test_traffic_models_of_codes_load_where_it_is_unfavourable_and_trains_of_fixed_length_do_not() -> None:
     known = vehicles()
     assert {name for name, v in known.items() if v.unfavourable} == {

@@ -144,6 +144,7 @@ def test_vehicles_carry_their_sources_and_convoys_add_up() -> None:
 @pytest.mark.parametrize(
     ("table", "words"),
     [
+        ("[fill]\nunit_weight = 20.0", "road in [bridge_drawing]"),
         ("[fill]\ncover = -0.1", "road would lie below the crown"),
         ("[fill]\ncover = 0.3\ngradient = 0.4", "below the masonry"),
         ("[fill]\nroad = [[-1.0, 0.5], [4.0, 0.5]]", "road line runs from"),

@@ -152,8 +152,7 @@ class Sweep:
     @cached_property
     def pieces(self) -> tuple[Array, Array]:
         """Pieces of the road (E, 2) that uniform load covers as a whole or not [m], and the load of each (E, N)."""
-        line = self.ground[1].line
-        low, high = float(line[0, 0]), float(line[-1, 0])
+        low, high = self.ground[1].over(self.ground[0])
         ends = np.linspace(low, high, max(2, int(np.ceil((high - low) / self.step()))) + 1)
         rule = spread_rule(self.model.fill.spread)  # type: ignore[union-attr]
         loads = [self._carried(spread(rule, *self.ground, tuple(along_the_road(a, b, b - a, 0.5 * (low + high)))))[0]

@@ -205,7 +205,7 @@ def spread_under(
     assert model.fill is not None
     assert vehicle is not None
     surface, road = ground_of(model) if ground is None else ground
-    low, high = float(road.line[0, 0]), float(road.line[-1, 0])
+    low, high = road.over(surface)
     on_road = []
     for x, length, load, stretch in vehicle.footprints(position, direction):
         if stretch:

@@ -138,6 +138,11 @@ class Road:
             raise InputError(msg, where="fill", hint="cover is measured from the road, with surfacing and ballast")
         return cls(line, _checked_line(fill, surface, road)) if fill.fill_line else road
 
+    def over(self, surface: Surface) -> tuple[float, float]:
+        """Where the road runs over a surface [m]; what stands on it further out reaches nothing of that."""
+        low, high = surface.reach
+        return max(low, float(self.line[0, 0])), min(high, float(self.line[-1, 0]))
+
     def surfacing(self, x: Array) -> Array:
         """Return the depth of the surfacing [m] at places x: zero where no line is under it."""
         if not len(self.under):
