@@ -139,7 +139,7 @@ class Road:
         return cls(line, _checked_line(fill, surface, road)) if fill.fill_line else road
 
     def over(self, surface: Surface) -> tuple[float, float]:
-        """Where the road runs over a surface [m]; what stands on it further out reaches nothing of that."""
+        """Where the road runs over a surface [m]; what stands on it further out does not reach that."""
         low, high = surface.reach
         return max(low, float(self.line[0, 0])), min(high, float(self.line[-1, 0]))
 
