@@ -29,7 +29,7 @@ def bricks(courses: int = 15, along: int = 20, open_heads: float = 0.01) -> conc
     bodies = [concio.Polyhedron.box("floor", (-1.0, -1.0, -0.3), (along * pitch + 1.0, 1.0, 0.0), kind="fixed")]
     for c in range(courses):
         for k in range(along):
-            low = np.array([(k + 0.5 * (c % 2)) * pitch, 0.0, c * BRICK[2]])
+            low = np.array([(k + 0.45 * (c % 2)) * pitch, 0.0, c * BRICK[2]])  # beyond the middle end bricks tip
             bodies.append(concio.Polyhedron.box(f"c{c:02}b{k:02}", tuple(low), tuple(low + BRICK), kind="rigid"))
     return concio.Model(
         tuple(bodies), {"block": concio.Rigid(unit_weight=18.0)}, {"joint": concio.JointLaw(0.6)},

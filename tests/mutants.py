@@ -1,6 +1,6 @@
 """A sample of mutants of the package: small faults put in on purpose, which the tests must see.
 
-python tests/mutants.py [--count 60] [--seed 0] [--jobs 2] [--only PATH] [--named] [--minutes M]
+python tests/mutants.py [--count 60] [--seed 0] [--jobs 2] [--only PATH] [--named] [--minutes M] [--traced FILE]
 
 Each mutant changes one operator, comparison, constant or function of one line (a minus for a plus, a
 maximum for a minimum, a factor of two where a number is not a threshold: between
@@ -9,6 +9,10 @@ package that holds it, until one fails. A test that fails without the mutant, to
 says which. Survivors are defects of the tests, or mutants that change nothing: those stand
 in ``mutants_kept.toml`` with the reason. Any other survivor makes the exit code 1. With ``--named`` those of
 ``mutants_named.toml`` are tried instead of a sample. After ``--minutes`` no other mutant is begun.
+
+A room has more tests than those that the table names. With ``--traced FILE``, a data file of coverage.py that knows the
+test of each line (``pytest -m "not long" --cov=concio --cov-context=test``, of pytest-cov), what survives its room is
+tried by all tests that ran its line, those that run the fewest lines first.
 """
 
 from __future__ import annotations
@@ -19,6 +23,7 @@ import os
 import random
 import shutil
 import signal
+import sqlite3
 import subprocess
 import sys
 import tempfile
@@ -38,6 +43,10 @@ SOURCE = HERE.parent / "src" / "concio"
 KEPT = HERE / "mutants_kept.toml"
 SECONDS = 90
 """A mutant whose tests take more time of a processor is dead: it made something endless."""
+TRACED_SECONDS = 300
+"""Time of a processor for the tests that ran the line of a mutant; where it is over, the mutant has survived."""
+MOST_TRACED = 1000
+"""Tests that ran the line of a mutant, beyond which no other is tried."""
 
 ROOMS: dict[str, tuple[str, ...]] = tomllib.loads((HERE / "mutants_rooms.toml").read_text(encoding="utf-8"))["rooms"]
 """Files and folders of the core, and the tests that look at them, quick ones first."""
@@ -79,10 +88,11 @@ class Mutant:
         return (raw[: self.start] + new.encode() + raw[self.start + len(old) :]).decode()
 
 
-LIMITED = f"""
+LIMITED = """
 import resource, sys, pytest
-resource.setrlimit(resource.RLIMIT_CPU, ({SECONDS}, {SECONDS} + 5))
-sys.exit(pytest.main(sys.argv[1:]))
+seconds = int(sys.argv[1])
+resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 5))
+sys.exit(pytest.main(sys.argv[2:]))
 """
 """Runs tests with a limit on the time of the processor, which says the same on a busy machine."""
 
@@ -167,13 +177,43 @@ def tests_for(path: str) -> list[str]:
     return list(ROOMS[max(places, key=len)])
 
 
-def killed_by(mutant: Mutant, package: Path) -> str:
+class Traces:
+    """Which test ran which line, from a data file of coverage.py.
+
+    Parameters
+    ----------
+    file : Path
+    """
+
+    def __init__(self, file: Path) -> None:
+        self.file = file
+        with sqlite3.connect(file) as data:
+            size = "select context_id, sum(length(numbits)) from line_bits group by context_id"
+            self.size = dict(data.execute(size).fetchall())
+
+    def tests_of(self, mutant: Mutant) -> list[str]:
+        """Return the tests that ran the line of a mutant, those that run the fewest lines first."""
+        asked = (
+            "select context.id, context.context, numbits from line_bits join context on context.id = context_id "
+            "join file on file.id = file_id where file.path like ?"
+        )
+        byte, bit = divmod(mutant.line, 8)
+        with sqlite3.connect(self.file) as data:
+            rows = data.execute(asked, (f"%/concio/{mutant.path}",)).fetchall()
+        ran = [(self.size[i], name) for i, name, bits in rows if byte < len(bits) and bits[byte] >> bit & 1]
+        return list(dict.fromkeys(name.rsplit("|", 1)[0] for _, name in sorted(ran) if "::" in name))
+
+
+def killed_by(mutant: Mutant, package: Path, traces: Traces | None = None) -> str:
     """Return the test that sees a mutant, or nothing; ``package`` is a copy of the package to put it in."""
     target = package / mutant.path
     whole = target.read_text(encoding="utf-8")
     target.write_text(mutant.put_in(whole), encoding="utf-8")
     try:
         test = first_failure(mutant.tests or tests_for(mutant.path), package)
+        if not test and traces is not None:
+            test = first_failure(traces.tests_of(mutant)[:MOST_TRACED], package, TRACED_SECONDS)
+            test = test if test.startswith(("FAILED ", "ERROR ")) else ""
     finally:
         target.write_text(whole, encoding="utf-8")
     if test.startswith(("FAILED ", "ERROR ")) and fails_anyway(test.split(" ", 1)[1], package):
@@ -181,12 +221,12 @@ def killed_by(mutant: Mutant, package: Path) -> str:
     return test
 
 
-def first_failure(tests: Sequence[str], package: Path) -> str:
+def first_failure(tests: Sequence[str], package: Path, seconds: int = SECONDS) -> str:
     """Return the first test that fails with a copy of the package, how else they ended, or nothing."""
     env = {**os.environ, "PYTHONPATH": str(package.parent), "OMP_NUM_THREADS": "1"}
     options = ["-x", "-q", "--no-header", "-p", "no:cacheprovider", "-m", "not long", "--tb=no"]
     done = subprocess.run(
-        [sys.executable, "-c", LIMITED, *options, *tests],
+        [sys.executable, "-c", LIMITED, str(seconds), *options, *tests],
         cwd=HERE.parent, env=env, capture_output=True, text=True, check=False,
     )  # fmt: skip
     if done.returncode == 0:
@@ -211,7 +251,9 @@ def main() -> int:
     parser.add_argument("--only", default="", help="a file or folder of the package")
     parser.add_argument("--named", action="store_true", help="those that once survived, one by one")
     parser.add_argument("--minutes", type=float, default=float("inf"), help="after which no other mutant is begun")
+    parser.add_argument("--traced", type=Path, help="data of coverage.py: which test ran which line")
     chosen = parser.parse_args()
+    traces = Traces(chosen.traced) if chosen.traced else None
     last = time.monotonic() + 60 * chosen.minutes
     missing = sorted({t for tests in ROOMS.values() for t in tests if not (HERE.parent / t).exists()})
     if missing:
@@ -235,7 +277,7 @@ def main() -> int:
                 return mutant, None
             package = copies.get()
             try:
-                return mutant, killed_by(mutant, package)
+                return mutant, killed_by(mutant, package, traces)
             finally:
                 copies.put(package)
 

@@ -70,10 +70,13 @@ class Returned:
         Of the restitution, 0 to 1.
     force : (pairs, d) array or None
         From which the compliance added to joints counts [kN].
+    hard : bool
+        Whether what that compliance still does to the impact is nothing.
     """
 
     share: float = 1.0
     force: Array | None = None
+    hard: bool = True
 
 
 class Certificate:

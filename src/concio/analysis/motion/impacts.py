@@ -74,21 +74,23 @@ class Impact:
         before : Returned, optional
             The law of that answer.
         """
-        taken = None if before is None else before.force
-        found, taken = self._hard(self.problem, found) if taken is None else self._again(found, taken)
+        if before is None or before.force is None:
+            found, law = self._hard(self.problem, found)
+        else:
+            found, law = self._again(found, before)
         if not self.scheme.restitution or found.residual > CERTIFIED or not self._gives(found):
-            return found, Returned(1.0, taken)
-        (best, taken), low, high = self._returning(0.0, found), 0.0, 1.0
+            return found, law
+        (best, law), low, high = self._returning(0.0, found), 0.0, 1.0
         for _ in range(HALVINGS):
             share = 0.5 * (low + high)
             trial, back = self._returning(share, best)
             if trial.residual > CERTIFIED or self._gives(trial):
                 high = share
             else:
-                low, best, taken = share, trial, back
-        return best, Returned(low, taken)
+                low, best, law = share, trial, back
+        return best, replace(law, share=low)
 
-    def _returning(self, share: float, near: StepSolution) -> tuple[StepSolution, Array]:
+    def _returning(self, share: float, near: StepSolution) -> tuple[StepSolution, Returned]:
         """Return the answer with a share of the restitution."""
         gap = self.problem.gap.copy()
         struck = np.flatnonzero(self.joint.struck)
@@ -104,16 +106,26 @@ class Impact:
         works = (found.t[:m] * moved)[self.joint.struck]
         return float(works.sum()) > NO_GAIN * float(np.abs(works).sum())
 
-    def _again(self, found: StepSolution, taken: Array) -> tuple[StepSolution, Array]:
-        """Return the answer near to that of nearly the same step, the compliance counted from the forces it has."""
+    def _again(self, found: StepSolution, before: Returned) -> tuple[StepSolution, Returned]:
+        """Return the answer near to that of nearly the same step, whose law was ``before``.
+
+        The compliance counts from the forces that the answer has where it then does nothing; else from those of before,
+        so that what is left of it stays the same and what turns within the step converges.
+        """
         p, (lent_n, lent_t) = self.problem, self._lent(self.problem)
-        again = self.solver.step(_counted(p, lent_n, lent_t, found.t), found.states, found.x, found.t)
+        assert before.force is not None
+        force = found.t if before.hard else before.force
+        counted = _counted(p, lent_n, lent_t, force)
+        if before.hard:
+            again = self.solver.step(counted, found.states, found.x, found.t)
+        else:
+            again = self.solver.step_again(counted, found)
         if again.residual <= CERTIFIED:
-            return again, found.t
+            return again, Returned(1.0, force, before.hard)
         return self._hard(p, self.solver.step(p, found.states, found.x, found.t))
 
-    def _hard(self, problem: StepProblem, found: StepSolution) -> tuple[StepSolution, Array]:
-        """Return the answer of a problem without the compliance added to joints, and the forces it counts from."""
+    def _hard(self, problem: StepProblem, found: StepSolution) -> tuple[StepSolution, Returned]:
+        """Return the answer of a problem without the compliance added to joints, and its law."""
         joint, (lent_n, lent_t) = self.joint, self._lent(problem)
         enough = RETURNED * float(np.abs(joint.y0[joint.struck, 0]).max())
         before = counted = np.zeros_like(found.t)
@@ -121,13 +133,13 @@ class Impact:
             grown = np.abs(found.t - before)
             left = max(float((lent_n * grown[:, 0]).max()), float((lent_t * grown[:, 1:].max(axis=1)).max()))
             if left <= enough or found.residual > CERTIFIED:
-                break
+                return found, Returned(1.0, counted)
             before = found.t
             again = self.solver.step(_counted(problem, lent_n, lent_t, before), found.states, found.x, found.t)
             if again.residual > CERTIFIED:
                 break
             found, counted = again, before
-        return found, counted
+        return found, Returned(1.0, counted, hard=False)
 
     def _lent(self, problem: StepProblem) -> tuple[Array, Array]:
         """Return the compliances along normal and tangent that were added to joints (pairs,)."""

@@ -186,7 +186,7 @@ class Stepper:
             if joint.impact:
                 hit = Impact(self.solver, problem, joint, self.scheme, x0, rows.imposed)
                 found, returned = hit.answer(found, returned)
-            if not self.turns and not f.elastic:
+            if found.residual > CERTIFIED or not (self.turns or f.elastic):
                 break
             again = self._inner(state, h, strain, x0, found.x, turn)
             if self.turns:
