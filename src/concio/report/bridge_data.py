@@ -45,6 +45,10 @@ def _masonry(page: BridgeReport) -> list[tuple[str, str]]:
             height = page.unit("length", given["pier_height"]) if given["pier_height"] else page.words["piers_fixed"]
             rows.append(("piers", f"{_lengths(page, given['pier_width'])}; {height}"))
         rows.append(("backing", page.unit("length", given["backing"]) if given["backing"] else page.words["nothing"]))
+    elif isinstance(drawn := model.generator.get("drawn"), Mapping):
+        rows.append(("ring_drawn", page.unit("length", drawn["ring"])))
+        rows.append(("voussoirs", str(drawn["voussoirs"])))
+        rows.append(("backing", page.unit("length", drawn["backing"]) if drawn["backing"] else page.words["nothing"]))
     else:
         rows.append(("blocks", str(len(model.free_bodies))))
     for name in dict.fromkeys(b.material for b in model.free_bodies):

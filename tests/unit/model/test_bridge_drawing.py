@@ -10,7 +10,9 @@ import pytest
 
 import concio
 from concio.analysis.bridges.sweep import Sweep
+from concio.analysis.bridges.variants import changes
 from concio.errors import InputError
+from concio.model.generate.arch_bridges import rebuilt
 
 ezdxf = pytest.importorskip("ezdxf")
 
@@ -64,6 +66,27 @@ def test_a_drawn_bridge_is_the_one_that_the_generator_makes(tmp_path: Path) -> N
         assert one is not None
         assert other is not None
         assert one.multiplier == pytest.approx(other.multiplier, rel=5e-3)
+
+
+def test_the_ring_of_a_drawn_bridge_is_varied_like_that_of_one_by_its_dimensions(tmp_path: Path) -> None:
+    """The road that was drawn stays where it is: a thicker ring leaves less cover."""
+    model = concio.load(drawn(tmp_path))
+    assert model.vehicle is not None
+    made = concio.bridge(span=SPAN, rise=RISE, ring=RING, voussoirs=16, width=2.0, block="rigid", unit_weight=22.0,
+                         friction=0.6)  # fmt: skip
+    road = ((-5.0, RISE + RING + 0.3), (8.0, RISE + RING + 0.3))
+    made = concio.with_vehicle(concio.with_fill(made, concio.Fill(road=road, passive=1.0)), model.vehicle)
+    found, expected = ({c.name: c for c in changes(m, 0.7, "right")}["ring"] for m in (model, made))
+    assert (found.value, found.low, found.high) == pytest.approx((RING, RING - 0.01, RING + 0.01), abs=2e-3)
+    assert found.at_low < found.at_high
+    for one, other in ((found.at_low, expected.at_low), (found.at_high, expected.at_high)):
+        assert one == pytest.approx(other, rel=1e-2)
+    thick = rebuilt(model, 1.5)
+    assert [b.name for b in thick] == [b.name for b in model.bodies]
+    low, high = (max(b.outline[:, 1].max() for b in bodies if b.kind != "fixed") for bodies in (model.outlines, thick))
+    assert high - low == pytest.approx(0.5 * RING, abs=2e-3)
+    back = concio.loads(concio.dumps(model))
+    assert [b.outline.tolist() for b in rebuilt(back, 1.2)] == [b.outline.tolist() for b in rebuilt(model, 1.2)]
 
 
 def test_lines_between_make_rings(tmp_path: Path) -> None:

@@ -147,7 +147,7 @@ def _lawful(model: Model, name: str, key: str) -> Callable[[float], Model]:
 
 def _ring(model: Model) -> float | None:
     """Return the thickness of all rings together, where the bridge can be made again."""
-    arguments = model.generator.get("arguments")
+    arguments = model.generator.get("arguments") or model.generator.get("drawn")
     if not isinstance(arguments, dict) or "ring" not in arguments:
         return None
     rings = arguments["ring"]

@@ -15,7 +15,8 @@ import numpy as np
 
 from concio.arguments import strict_with
 from concio.errors import InputError
-from concio.model.generate.bridge_barrel import Barrel, RingPlan, barrel_between, barrel_of
+from concio.model.generate import bridge_barrel
+from concio.model.generate.bridge_barrel import Barrel, Lines, RingPlan, barrel_between, barrel_of
 from concio.model.generate.generator_arguments import Common, checked, count, not_negative, positive
 from concio.model.generate.masonry import Piece, assemble, numbered, rectangle
 from concio.model.generate.profiles import profile_of
@@ -131,7 +132,7 @@ def bridge(
         if pier_width is not None:
             msg = "pier_width and the lines of the barrel are both given"
             raise InputError(msg, where=where, hint="piers are as wide as the lines leave room: leave pier_width out")
-        barrels = _drawn(where, intrados, extrados, ring_lines, voussoirs)
+        barrels, lines = _drawn(where, intrados, extrados, ring_lines, voussoirs)
         spans = [float(b.right[0, 0] - b.left[0, 0]) for b in barrels]
         _in_metres(where, spans, 0.0)
     else:
@@ -174,7 +175,11 @@ def bridge(
     title = f"{shape} arch bridge, {len(spans)} span{'s' * (len(spans) > 1)} of " + ", ".join(f"{s:g}" for s in spans)
     record: dict[str, object] = {"kind": "bridge", "shape": shape, "spans": [float(s) for s in spans],
                                  "starts": record_starts, "rings": 1}  # fmt: skip
-    if intrados is None:
+    if intrados is not None:
+        record["drawn"] = {"lines": lines, "ring": bridge_barrel.thickness_of(lines), "voussoirs": voussoirs,
+                           "pier_height": high, "pier_courses": pier_courses, "backing": back,
+                           "abutment": behind[0] if abutment is not None else None}  # fmt: skip
+    else:
         rings = _lengths(where, "ring", ring, most=MOST_RINGS)
         foot = rings if springing_ring is None else _lengths(where, "springing_ring", springing_ring, len(rings))
         numbers = [voussoirs] * len(rings) if isinstance(voussoirs, int) else list(voussoirs)
@@ -195,15 +200,22 @@ def rebuilt(model: Model, factor: float) -> tuple[Body, ...]:
     Raises
     ------
     InputError
-        The model was not made by :func:`bridge` from a span and a ring.
+        The model was not made by :func:`bridge`.
     """
-    given = model.generator.get("arguments")
-    if not isinstance(given, Mapping):
+    given, drawn = model.generator.get("arguments"), model.generator.get("drawn")
+    known = given if isinstance(given, Mapping) else drawn if isinstance(drawn, Mapping) else None
+    if known is None:
         msg = "the model does not know how its bridge was made"
-        raise InputError(msg, hint="make it by [bridge] with span and ring")
-    arguments: dict[str, Any] = {key: value for key, value in given.items() if value is not None}
-    for key in ("ring", "springing_ring"):
-        arguments[key] = [factor * v for v in arguments[key]]
+        raise InputError(msg, hint="make it by [bridge]")
+    arguments: dict[str, Any] = {key: value for key, value in known.items() if value is not None}
+    if known is given:
+        for key in ("ring", "springing_ring"):
+            arguments[key] = [factor * v for v in arguments[key]]
+    else:
+        inner, *between, outer = bridge_barrel.thicker(arguments.pop("lines"), factor)
+        arguments |= {"intrados": inner, "extrados": outer, "ring_lines": between, "ring": None}
+        if len(inner) == 1:
+            arguments |= {"intrados": inner[0], "extrados": outer[0], "ring_lines": [line[0] for line in between]}
     new = {body.name: body for body in bridge(**arguments).outlines}
     if set(new) != {b.name for b in model.bodies}:
         msg = "bodies were added to the bridge or taken away since it was made"
@@ -253,8 +265,8 @@ def _plan(
     )
 
 
-def _drawn(where: str, intrados: Any, extrados: Any, between: Any, voussoirs: Any) -> list[Barrel]:
-    """Return the barrel of each span between its lines."""
+def _drawn(where: str, intrados: Any, extrados: Any, between: Any, voussoirs: Any) -> tuple[list[Barrel], list[Lines]]:
+    """Return the barrel of each span between its lines, and the lines from the intrados outwards [m]."""
     if intrados is None or extrados is None:
         msg = "intrados and extrados belong together, and one of them is missing"
         raise InputError(msg, where=where)
@@ -265,11 +277,12 @@ def _drawn(where: str, intrados: Any, extrados: Any, between: Any, voussoirs: An
         raise InputError(msg, where=where, hint="give as many lines for the extrados and between the rings")
     given = voussoirs if isinstance(voussoirs, int) else next(iter(voussoirs))
     number = count(where, "voussoirs", given, 3, MOST_VOUSSOIRS)
-    found = []
-    for k, lines in enumerate(zip(*rings, strict=True), 1):
-        own = [[[quantity(v, "length", where=where) for v in p] for p in line] for line in lines]
-        found.append(barrel_between(f"{where}, span {k}" if several else where, own, number, f"s{k}-" * several))
-    return found
+    own = [[[[quantity(v, "length", where=where) for v in p] for p in line] for line in lines] for lines in rings]
+    found = [
+        barrel_between(f"{where}, span {k}" if several else where, lines, number, f"s{k}-" * several)
+        for k, lines in enumerate(zip(*own, strict=True), 1)
+    ]
+    return found, own
 
 
 def _nested(line: Any) -> bool:

@@ -146,6 +146,30 @@ def barrel_between(where: str, lines: Sequence[Sequence[Sequence[float]]], vouss
     return Barrel(tuple(pieces), left, right, _between(drawn[-1], 0.0, 1.0))
 
 
+Lines = list[list[list[float]]]
+"""A line of each span, as points [m]."""
+
+
+def thickness_of(lines: Sequence[Lines]) -> float:
+    """Return the thickness of all rings of the first span at its middle [m]."""
+    ends = [share_of_line(np.array(line[0], dtype=float), np.array([0.5]))[0] for line in (lines[0], lines[-1])]
+    return float(np.hypot(*(ends[1] - ends[0])))
+
+
+def thicker(lines: Sequence[Lines], factor: float) -> list[Lines]:
+    """Return lines of the barrel further from the intrados by a factor, which is the first of them and stays."""
+    found = [list(lines[0])]
+    for line in lines[1:]:
+        made = []
+        for inner, own in zip(lines[0], line, strict=True):
+            points = np.array(own, dtype=float)
+            along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+            foot = share_of_line(np.array(inner, dtype=float), along / along[-1])
+            made.append((foot + factor * (points - foot)).tolist())
+        found.append(made)
+    return found
+
+
 def _check_apart(where: str, ring: int, low: Array, high: Array) -> None:
     """Refuse two lines of a ring that meet or cross anywhere."""
     thick = np.hypot(*(high - low).T)
