@@ -134,14 +134,23 @@ class Analyses:
             found = least(search(sweep, worst=1, progress=self.progress), 1, 0.0)
         return found[0] if found else None
 
+    @cached_property
+    def crossed(self) -> Assembly:
+        """The model with its vehicle where that is worst."""
+        from concio.analysis.bridges.sweep import placed
+        from concio.contact.assembly import assemble
+
+        return assemble(self.model if self.bridge is None else placed(self.model, self.bridge))
+
     @property
     def acting(self) -> dict[str, dict[str, Any]]:
         """Load groups with their forces at factor 1, where the model was assembled."""
         from concio.verdict.question import acting_groups
 
-        if not self.made("assembly"):
+        if not (self.made("assembly") or self.made("bridge")):
             return {}
-        return {a.group: {"what": a.what, "force": list(a.force), "size": a.size} for a in acting_groups(self.assembly)}
+        shown = self.assembly if self.made("assembly") else self.crossed
+        return {a.group: {"what": a.what, "force": list(a.force), "size": a.size} for a in acting_groups(shown)}
 
     @property
     def attention(self) -> tuple[str, ...]:

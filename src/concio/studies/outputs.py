@@ -138,9 +138,9 @@ KNOWN: dict[str, Output] = {
         Output("friction_factor", "-", "lower bound of the common factor of friction with which the structure stands: "
                "with less no forces balance the loads", _friction, "high"),
         Output("bridge_load_factor", "-", "upper bound of the load factor of a vehicle at its worst position on a "
-               "bridge", _bridge_bound, "low"),
-        Output("bridge_axle", "kN", "heaviest axle at that bound", _bridge_axle, "low"),
-        Output("bridge_worst_position", "m", "worst position of the vehicle", _bridge_place),
+               "bridge", _bridge_bound, "low", multiplies=True),
+        Output("bridge_axle", "kN", "heaviest axle at that bound", _bridge_axle, "low", multiplies=True),
+        Output("bridge_worst_position", "m", "worst position of the vehicle", _bridge_place, multiplies=True),
     )
 }  # fmt: skip
 """Outputs by name; beside them ``reaction.NAME.x`` and ``reaction.NAME.y`` of a fixed body or a support [kN]."""

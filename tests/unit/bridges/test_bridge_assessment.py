@@ -326,6 +326,8 @@ def test_a_study_varies_ring_and_fill_with_the_bridge_as_its_model(tmp_path: Pat
     assert np.isfinite(factors).all()
     assert np.ptp(factors) > 0
     assert found.values("bridge_axle") == pytest.approx(100.0 * factors)
+    acting = {a.group: a.role for a in found.verdict.question.acting}
+    assert acting == {"dead": "constant", "fill": "constant", "live": "multiplied"}
 
 
 def test_brackets_are_at_positions_that_are_least_in_their_neighbourhood() -> None:

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Literal
 
 import numpy as np
 
 from concio.analysis.bridges.bridge_result import Bracket, BridgeResult, Coulomb
 from concio.analysis.bridges.mexe import mexe_of
 from concio.analysis.bridges.service import service_state, with_settlement
-from concio.analysis.bridges.sweep import APART, FINE, Standing, Sweep, grid, least, lowest, search
+from concio.analysis.bridges.sweep import APART, FINE, Standing, Sweep, grid, least, lowest, placed, search
 from concio.analysis.bridges.two_vehicles import second_vehicle, worst_apart
 from concio.analysis.bridges.variants import changes, parts
 from concio.analysis.entry_point import entry_point
@@ -131,7 +130,7 @@ def assess_bridge(
     if not few:
         msg = "no position of the vehicle has a load factor: nothing bounds its load anywhere"
         raise SolverError(msg, hint="does the vehicle stand on masonry that can move?")
-    loaded = [_placed(model, s) for s in few]
+    loaded = [placed(model, s) for s in few]
     brackets = []
     for s, one in zip(few[:worst], loaded, strict=False):
         _tell(progress, "bracket", f"x = {s.position:.3g} m")
@@ -183,13 +182,6 @@ def _refuse_what_does_not_stand(sweep: Sweep) -> None:
     told = not_standing(sweep.assembly, ASKED, DEAD_NOT_STANDING)
     what = of_the_joints(DEAD_NOT_STANDING, sweep.assembly.detection)
     raise NoEquilibriumError(what, hint="look at it with 'concio run' and no vehicle", verdict=told)
-
-
-def _placed(model: Model, standing: Standing) -> Model:
-    assert model.vehicle is not None
-    way: Literal["left", "right"] = "left" if standing.direction == "left" else "right"
-    vehicle = replace(model.vehicle, position=standing.position, direction=way, loaded=standing.loaded)
-    return with_vehicle(model, vehicle, whole=False)
 
 
 def _worst_of(model: Model, step: float | None, fine: float) -> Standing | None:

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
+from typing import Literal
 
 import numpy as np
 
@@ -21,7 +22,7 @@ from concio.contact.loads import place_forces
 from concio.errors import InputError, SolverError
 from concio.model.crossing import STRETCH, Vehicle
 from concio.model.model import Model
-from concio.model.road.earth import ground_of, spread_under, without_vehicle
+from concio.model.road.earth import ground_of, spread_under, with_vehicle, without_vehicle
 from concio.model.road.spread import SpreadLoad, along_the_road, spread, spread_rule
 from concio.model.road.surface import Road, Surface
 from concio.problem.contact_problem import ContactProblem
@@ -192,6 +193,14 @@ class Sweep:
         spans = [s for s in _lengths(self.model.generator.get("spans")) if s > 0]
         wanted = min([*spans, high - low]) / COARSE
         return max(wanted, (high - low) / MOST)
+
+
+def placed(model: Model, standing: Standing) -> Model:
+    """Return a model with its vehicle where it stands, and uniform load where that stands then."""
+    assert model.vehicle is not None
+    way: Literal["left", "right"] = "left" if standing.direction == "left" else "right"
+    vehicle = replace(model.vehicle, position=standing.position, direction=way, loaded=standing.loaded)
+    return with_vehicle(model, vehicle, whole=False)
 
 
 def _lengths(given: object) -> list[float]:
