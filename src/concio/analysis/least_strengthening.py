@@ -15,14 +15,15 @@ Source: J. E. Kelley, The cutting-plane method, J. SIAM 8 (1960), for one variab
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
 
+from concio.analysis.tie_places import tie_at_height
 from concio.arguments import closest
-from concio.contact.assembly import Assembly
+from concio.contact.assembly import Assembly, assemble
 from concio.errors import InputError, SolverError
 from concio.problem.contact_problem import ContactProblem
 from concio.solvers.statics.associated_limit import LimitLoad, associated_limit
@@ -57,6 +58,10 @@ class LeastStrengthening:
     before : float
         Multiplier without any.
     programmes : int
+    height : float
+        Of a tie that was looked for at several heights, the one at which it needs least [m]; else ``nan``.
+    by_height : mapping of float to float
+        The least force at each of these heights [kN]; ``inf`` where no force does.
     """
 
     kind: Kind
@@ -67,6 +72,8 @@ class LeastStrengthening:
     reached: float
     before: float
     programmes: int
+    height: float = math.nan
+    by_height: Mapping[float, float] = field(default_factory=dict)
 
 
 def least_strengthening(
@@ -110,6 +117,27 @@ def least_strengthening(
         p = further
     msg = f"the least {kind} '{of}' was not found within {MOST_LINES} programmes"
     raise SolverError(msg, hint="try another target")
+
+
+def least_by_height(
+    assembly: Assembly, groups: Sequence[str], target: float, tie: str, heights: Sequence[float]
+) -> LeastStrengthening:
+    """Return the least force of a tie over several heights, each with its proof; the first of those that need the same.
+
+    Raises
+    ------
+    InputError, SolverError
+        As :func:`least_strengthening`; or the tie meets no body at a height.
+    """
+    if not heights:
+        msg = "there is no height at which the tie could be"
+        raise InputError(msg, hint="for example heights=[2.5, 5.0]")
+    found = {}
+    for height in dict.fromkeys(float(h) for h in heights):
+        moved = assemble(tie_at_height(assembly.model, tie, height))
+        found[height] = least_strengthening(moved, groups, target, "tie", tie)
+    best = min(found, key=lambda h: found[h].amount)
+    return replace(found[best], height=best, by_height={h: one.amount for h, one in found.items()})
 
 
 def _line(found: LimitLoad, live: Array, slope: Callable[[Array], float]) -> tuple[float, float]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from concio.analysis.exact_proofs import against_slips
-from concio.analysis.least_strengthening import Kind, LeastStrengthening, least_strengthening
+from concio.analysis.least_strengthening import Kind, LeastStrengthening, least_by_height, least_strengthening
 from concio.analysis.lent_compliance import lent_assembly
 from concio.analysis.limit_torsion import SPREAD, SpreadSteps, twisting
 from concio.analysis.load_steps import LoadSteps
@@ -149,8 +149,9 @@ class LimitResult(Shown):
         return sensitivity_of(split(self.assembly), lambda m: split(lent_assembly(m)), self.associated, own)
 
     def least(
-        self, target: float, *, tie: str | None = None, cohesion: str | None = None, load: str | None = None
-    ) -> LeastStrengthening:
+        self, target: float, *, tie: str | None = None, cohesion: str | None = None, load: str | None = None,
+        heights: Sequence[float] | None = None,
+    ) -> LeastStrengthening:  # fmt: skip
         """Return the least strengthening that brings the associated multiplier to a target, with a proof.
 
         Name one thing: the tie whose yield force, the joint law whose cohesion, or the load group whose factor is
@@ -161,6 +162,8 @@ class LimitResult(Shown):
         target : float
             Multiplier that is wanted.
         tie, cohesion, load : str, optional
+        heights : sequence of float, optional
+            Heights at which the tie could be [m]: the one where it needs the least force is found too.
 
         Raises
         ------
@@ -179,6 +182,9 @@ class LimitResult(Shown):
         >>> held = concio.limit(dataclasses.replace(pillar, ties=(rod,)), path=False)
         >>> round(held.least(0.5, tie="rod").amount, 6)
         2.5
+        >>> placed = held.least(0.5, tie="rod", heights=[0.5, 1.0, 2.0])
+        >>> placed.height, {h: round(f, 6) for h, f in placed.by_height.items()}
+        (2.0, {0.5: 10.0, 1.0: 5.0, 2.0: 2.5})
         """
         named: list[tuple[Kind, str | None]] = [("tie", tie), ("cohesion", cohesion), ("load", load)]
         given = [(kind, of) for kind, of in named if of is not None]
@@ -186,6 +192,11 @@ class LimitResult(Shown):
             msg = "name one strengthening: tie, cohesion or load"
             raise InputError(msg, hint='for example least(0.3, tie="roof tie")')
         kind, of = given[0]
+        if heights is not None:
+            if kind != "tie":
+                msg = "heights are those of a tie"
+                raise InputError(msg, hint='for example least(0.3, tie="roof tie", heights=[2.5, 5.0])')
+            return least_by_height(self.assembly, self.groups, target, of, heights)
         return least_strengthening(self.assembly, self.groups, target, kind, of)
 
     @property

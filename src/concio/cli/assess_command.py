@@ -83,6 +83,8 @@ def assess(
             "kind": stronger.measure.kind, "of": list(stronger.measure.of), "unit": stronger.measure.unit,
             "zeta_E_wanted": stronger.wanted, "amount": finite_or_none(stronger.amount),
             "fails_at": finite_or_none(stronger.fails_at), "zeta_E": finite_or_none(stronger.reached),
+            **({"height": stronger.height, "by_height": {f"{z:g}": finite_or_none(f) for z, f
+                                                        in stronger.by_height.items()}} if stronger.by_height else {}),
         }  # fmt: skip
     if sensitivity is not None:
         told["sensitivity"] = {row.name: {"value": row.value, "below": finite_or_none(row.below),

@@ -134,7 +134,8 @@ def _hand(t: Texts, found: Assessment, head: Head) -> str:
              _work(t, found, check, whole=head.full), f"<p><b>{result}</b></p>"]  # fmt: skip
     if len(found.mechanisms) > 1:
         rows = [[escape(t.name(o)), escape(t.way(o.direction)), t.n(c.program, 6), t.n(c.alpha, 6),
-                 t.n(c.difference, 1)] for o, c in zip(found.mechanisms, found.hand_checks, strict=True)]  # fmt: skip
+                 t.n(c.difference, 1)] for k, (o, c) in enumerate(zip(found.mechanisms, found.hand_checks, strict=True))
+                if head.full or k == 0 or o.section is None or not c.agrees]  # fmt: skip
         names = [t.words[k] for k in ("name", "direction", "a_by_program", "a_by_hand", "a_difference")]
         parts.append(f"<p>{t.say('a_all')}</p>{t.table(names, rows, 2)}")
     return "".join(parts)

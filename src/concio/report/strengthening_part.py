@@ -25,7 +25,13 @@ def strengthening_html(t: Texts, found: Strengthened) -> str:
         text = t.say("strengthen_never", largest=t.n(found.largest), **facts)
     else:
         text = t.say("strengthen_found", amount=t.n(found.amount, 5), below=t.n(found.fails_at, 5), **facts)
+    if found.by_height:
+        text += " " + t.say("strengthen_height", z=t.n(found.height))
     parts = [f"<p>{text}</p>", f"<p>{t.say('strengthen_how', n=str(len(found.trials)))}</p>"]
+    if found.by_height:
+        rows = [[t.n(z), t.n(force, 5) if math.isfinite(force) else t.say("strengthen_more")]
+                for z, force in found.by_height.items()]  # fmt: skip
+        parts.append(t.table([t.words["strengthen_at"], t.words["strengthen_force"]], rows, 0))
     if found.amount != 0:
         parts.append(before_after(t, found.before, found.after))
         if found.after.worst is not None and math.isfinite(found.amount):

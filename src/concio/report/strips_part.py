@@ -29,4 +29,4 @@ def strips_html(t: Texts, found: Assessment) -> str:
         rows.append([name, f"{escape(how)}, {escape(t.way(m.direction))}", t.n(m.multiplier, 5), t.n(m.level),
                      t.n(m.d0), t.n(m.zeta), said])  # fmt: skip
     head = [t.words[k] for k in ("strip", "strip_motion", "alpha0", "strip_level", "d0", "zeta", "outcome")]
-    return f"<h3>{t.say('strips')}</h3><p>{t.say('strips_text')}</p>{t.table(head, rows, 2)}"
+    return f"<h3>{t.say('strips')}</h3><p>{t.say('strips_text')}</p><div class=strips>{t.table(head, rows, 2)}</div>"

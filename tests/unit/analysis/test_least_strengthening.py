@@ -63,6 +63,31 @@ def test_the_least_tie_is_that_of_a_bisection(friction: float, at: float, more: 
     assert least.programmes < 20
 
 
+@settings(max_examples=sample(2, 8), deadline=None)
+@given(st.floats(0.5, 0.9), st.lists(st.floats(0.3, 2.9), min_size=2, max_size=4, unique=True), st.floats(1.1, 1.5))
+def test_the_best_height_of_a_tie_needs_the_least_of_all(friction: float, heights: list[float], more: float) -> None:
+    """Each height by itself, drawn there; the tie moves with its block."""
+    model = wall(friction, 2.9)
+    bare = multiplier(replace(model, ties=()))
+    placed = concio.limit(model, path=False, search=False).least(more * bare, tie="rod", heights=heights)
+    assert list(placed.by_height) == heights
+    for height, amount in placed.by_height.items():
+        alone = concio.limit(wall(friction, height), path=False, search=False).least(more * bare, tie="rod")
+        assert amount == pytest.approx(alone.amount, rel=1e-9)
+    assert placed.amount == min(placed.by_height.values()) == placed.by_height[placed.height]
+
+
+def test_heights_are_those_of_a_tie_that_meets_a_block() -> None:
+    found = concio.limit(wall(0.6, 2.9), path=False, search=False)
+    refused = (
+        ({"tie": "rod", "heights": [9.0]}, "meets no body"), ({"tie": "rod", "heights": []}, "no height"),
+        ({"load": "roof", "heights": [1.0]}, "those of a tie"),
+    )  # fmt: skip
+    for named, words in refused:
+        with pytest.raises(InputError, match=words):
+            found.least(0.3, **named)  # type: ignore[arg-type]
+
+
 def test_grout_and_load_are_those_of_a_bisection() -> None:
     model = replace(wall(0.2, 2.9), ties=())
     found = concio.limit(model, path=False, search=False)

@@ -17,6 +17,9 @@ from commands import run
 from concio import Body, JointLaw, Load, Model, Rigid, Tie
 from concio.analysis.seismic.strengthening import Measure, least_amount, strengthen
 from concio.errors import InputError
+from concio.model.file.assessment_table import StrengthenTable
+from concio.model.file.reading import file_units
+from concio.report.assessment_page import AssessmentReport
 from samples import sample
 from seismic_walls import courses, overturning, site
 
@@ -110,11 +113,32 @@ def test_a_tie_by_either_name_is_the_same() -> None:
     assert one.reached == other.reached
 
 
+def test_the_height_at_which_a_tie_needs_least_is_the_highest_of_a_pillar() -> None:
+    """F z is what is missing: W (alpha h/2 - b/2) with alpha at the demand; a lower height after it needs more."""
+    tie = Tie("rod", "c2", (0.0, 1.5), "", (-4.0, 1.5), stiffness=1e6, yield_force=1.0)
+    model = replace(pillar(n=2), ties=(tie,))
+    heights = (0.8, 1.8, 1.4)
+    found = strengthen(model, Measure("tie", ("rod",), heights=heights), **asked(direction="right"))
+    assert (found.height, found.amount) == (1.8, found.by_height[1.8])
+    assert found.by_height[0.8] * 0.8 == pytest.approx(found.amount * 1.8, rel=3e-4)
+    assert math.isinf(found.by_height[1.4])
+    assert found.reached >= 1.0 > found.trials[found.fails_at]
+    assert "at z = 1.8 m" in found.sentence
+    assert {t.body_a for t in found.after.model.ties} == {"c2"}
+    for language, words in (("en", "height of the tie"), ("it", "quota della catena")):
+        page = AssessmentReport(found.after, stronger=found, language=language).html()
+        assert words in page
+    own = {"kind": "tie", "of": ["rod"], "heights": [0.8, 1.8, 1.4]}
+    read = StrengthenTable.model_validate(own, context={"units": file_units({}, "")})
+    assert Measure(read.kind, tuple(read.of), heights=tuple(read.heights)).heights == heights
+
+
 @pytest.mark.parametrize(
     ("measure", "words"),
     [
         (Measure("tie", ("rod",)), "no tie called 'rod'"),
         (Measure("mass", ("roof",)), "'roof' is not a body"),
+        (Measure("tie", ("rod",), heights=(1.0,)), "no tie 'rod'"),
         (Measure("buttress", ("c1",), side="right", height=20.0), "no ground under it"),
     ],
 )
@@ -125,7 +149,7 @@ def test_what_a_model_does_not_have_is_refused(measure: Measure, words: str) -> 
 
 NOTHING: list[dict[str, Any]] = [
     {"kind": "wires", "of": ("a",)}, {"kind": "tie", "of": ("a", "b")}, {"kind": "mass", "of": ()},
-    {"kind": "buttress", "of": ("a",), "side": "top"},
+    {"kind": "buttress", "of": ("a",), "side": "top"}, {"kind": "mass", "of": ("a",), "heights": (1.0,)},
 ]  # fmt: skip
 
 

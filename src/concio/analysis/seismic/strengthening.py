@@ -21,6 +21,7 @@ from concio.analysis.entry_point import entry_point
 from concio.analysis.seismic.assess import assess
 from concio.analysis.seismic.assessment import Assessment
 from concio.analysis.seismic.weakest_mechanism import chosen_bodies
+from concio.analysis.tie_places import tie_at_height
 from concio.arguments import closest, strict
 from concio.contact.separate import surroundings
 from concio.display import number
@@ -61,6 +62,8 @@ class Measure:
         Of a buttress, from the foot of these bodies [m]; by default all of theirs.
     unit_weight : float
         Of a buttress [kN/m3].
+    heights : tuple of float
+        Of a tie: heights at which it could be, the one where it needs the least force is found [m]; none for its own.
 
     Examples
     --------
@@ -74,12 +77,17 @@ class Measure:
     side: str = "left"
     height: float | None = None
     unit_weight: float = 20.0
+    heights: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
         if self.kind not in KINDS:
             msg = f"there is no strengthening '{self.kind}'"
             raise InputError(msg, hint=closest(self.kind, tuple(KINDS)))
         object.__setattr__(self, "of", tuple(self.of))
+        object.__setattr__(self, "heights", tuple(dict.fromkeys(float(h) for h in self.heights)))
+        if self.heights and self.kind != "tie":
+            msg = f"a {self.kind} has no heights to choose from"
+            raise InputError(msg, hint="heights are those of a tie")
         if self.side not in ("left", "right"):
             msg = f"a buttress has no side '{self.side}'"
             raise InputError(msg, hint=closest(self.side, ("left", "right")))
@@ -140,6 +148,11 @@ class Strengthened:
         With the amount, or the best that was met.
     trials : mapping of float to float
         zeta_E by the amounts that were assessed; ``nan`` where the model does not stand.
+    height : float
+        Of a tie that was looked for at several heights, the one at which it needs least [m]; else ``nan``.
+    by_height : mapping of float to float
+        The force at each of these heights [kN]; ``inf`` where a tie there needs more than at one before it, or no force
+        does.
     """
 
     measure: Measure
@@ -151,11 +164,14 @@ class Strengthened:
     before: Assessment | None
     after: Assessment
     trials: Mapping[float, float] = field(default_factory=dict)
+    height: float = math.nan
+    by_height: Mapping[float, float] = field(default_factory=dict)
 
     @property
     def sentence(self) -> str:
         """What was found, in a sentence."""
         what = f"{self.measure.kind} of {', '.join(self.measure.of)}"
+        what += f" at z = {number(self.height, 4)} m" if self.by_height else ""
         if self.amount == 0:
             return f"{what}: not needed, zeta_E is {number(self.reached, 4)} without it"
         unit = self.measure.unit
@@ -211,6 +227,8 @@ def strengthen(
     if not 0 < most < math.inf:
         msg = f"the largest amount to try, {most:g} {measure.unit}, must be positive"
         raise InputError(msg)
+    if measure.heights:
+        return _by_height(model, measure, zeta, most, arguments)
     measure.applied(model, most)
     tried: dict[float, Assessment | None] = {}
 
@@ -235,6 +253,32 @@ def strengthen(
         after = assess(measure.applied(model, most), **arguments)
     reached = after.least
     return Strengthened(measure, zeta, amount, below, reached, most, before, after, trials)
+
+
+def _by_height(model: Model, measure: Measure, zeta: float, most: float, arguments: Mapping[str, Any]) -> Strengthened:
+    """Return what a tie needs at the height at which it needs least; elsewhere it is not settled what more it needs."""
+    own, name = replace(measure, heights=()), measure.of[0]
+    made = {h: tie_at_height(model, name, h) for h in measure.heights}
+    best: Strengthened | None = None
+    forces: dict[float, float] = {}
+    at = measure.heights[0]
+    for height, moved in made.items():
+        if best is not None and math.isfinite(best.amount):
+            try:
+                short = assess(own.applied(moved, best.amount), **arguments).least < zeta
+            except NoEquilibriumError:
+                short = True
+            if short:
+                forces[height] = math.inf
+                continue
+        largest = most if best is None or not math.isfinite(best.amount) else best.amount
+        found = strengthen(moved, own, zeta=zeta, largest=largest, **arguments) if largest > 0 else best
+        assert found is not None
+        forces[height] = found.amount
+        if best is None or found.amount < best.amount or (math.isinf(found.amount) and found.reached > best.reached):
+            best, at = found, height
+    assert best is not None
+    return replace(best, measure=measure, height=at, by_height=forces)
 
 
 def least_amount(missing: Callable[[float], float], most: float) -> tuple[float, float]:

@@ -204,6 +204,8 @@ class StrengthenTable(Table):
         Of a buttress; by default that of these bodies.
     unit_weight :
         Of a buttress.
+    heights :
+        Of a tie: heights at which it could be; the one where it needs the least force is found.
     """
 
     kind: Literal["tie", "mass", "buttress", "grout"]
@@ -213,6 +215,7 @@ class StrengthenTable(Table):
     side: Literal["left", "right"] = "left"
     height: Length | None = None
     unit_weight: UnitWeight = 20.0
+    heights: list[Length] = Field(default_factory=list)
 
 
 class ReportTextTable(Table):
