@@ -304,8 +304,10 @@ class AssessmentReport(Texts):
             return ""
         title = f"<h2>{self.say('sensitivity')}</h2>"
         strip = self.found.worst.section is not None
-        slides = f"<p>{self.say('sens_slides')}</p>" if self.found.worst.found.flow != "no sliding" else ""
-        derivatives = sensitivity_html(self, self.sensitivity, strip=strip) if self.sensitivity else slides
+        slides = self.found.worst.found.flow != "no sliding"
+        derivatives = f"<p>{self.say('sens_slides')}</p>" if slides else ""
+        if self.sensitivity:
+            derivatives = sensitivity_html(self, self.sensitivity, strip=strip, slides=slides)
         if not self.varied:
             return f"<section id=sensitivity>{title}{derivatives}</section>"
         rows = [[self.say("as_given"), self.n(self.found.worst.multiplier, 6), self.n(self.found.zeta)]]

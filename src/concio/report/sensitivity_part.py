@@ -23,8 +23,9 @@ TOLD, SHOWS = 3, 5e-4
 
 
 def sensitivity_html(
-    t: Texts, found: Sensitivity, *, strip: bool = False, of: Of = "sens", named: str = "", value: str = ""
-) -> str:
+    t: Texts, found: Sensitivity, *, strip: bool = False, of: Of = "sens", named: str = "", value: str = "",
+    slides: bool = False,
+) -> str:  # fmt: skip
     """Return the part of a report on what a number depends on; of a ``strip`` the plane thickness is its width.
 
     Parameters
@@ -37,6 +38,8 @@ def sensitivity_html(
         state, or the load factor at which a path collapses.
     named, value : str
         Block or joint of a number of a state, and the number with its unit.
+    slides : bool
+        Whether joints slide in the mechanism of an assessment, so that its derivatives are those of virtual work.
     """
 
     def name(row: SensitivityRow) -> str:
@@ -53,5 +56,5 @@ def sensitivity_html(
     sides = " " + t.say(f"{of}_sides") if any(row.one_sided for row in found.rows) else ""
     text = t.say("sens_sentence", parts="; ".join(told) or t.words["sens_none"])
     drawn = t.figure(sensitivity_figure(found, t.words[f"{of}_axis"], name), f"figure_{of}", "bars")
-    told_of = t.say(f"{of}_text", of=named, value=value)
+    told_of = t.say("sens_text_slides" if slides else f"{of}_text", of=named, value=value)
     return f"<div class=keep><p>{told_of}{sides}</p>{drawn}<p>{text}</p></div>"

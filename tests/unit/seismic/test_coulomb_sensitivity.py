@@ -82,7 +82,7 @@ def test_the_report_of_a_wall_that_slides_has_bars_and_a_sentence() -> None:
     found = concio.assess(overturning(3, friction=0.08), site=site(), direction="left", levels=["SLV"])
     told = found.sensitivity()
     assert told is not None
-    for language, words in (("en", "One per cent more"), ("it", "un per cento in più")):
+    for language, words in (("en", "by virtual work"), ("it", "con i lavori virtuali")):
         text = AssessmentReport(found, head=Head(), sensitivity=told, language=language).html()
         assert words in text
         assert "figure class=\"bars\"" in text
