@@ -171,6 +171,25 @@ def test_a_name_is_that_of_the_smallest_block_around_it(tmp_path):
     assert {b.name: b.area for b in model.bodies} == pytest.approx({"core": 0.6, "rest": 0.4, "shell": 8.0})
 
 
+def test_a_text_on_the_layer_of_blocks_names_its_block(tmp_path):
+    """Unless other blocks have it too, as a material, there are several in the block, or a layer of names says more."""
+    sheet = Sheet(unit=6)
+    for k, texts in enumerate((["A1"], ["A2", "see note"], ["stone"], ["stone"], ["A5"])):
+        sheet.box(k, 0, k + 1, 1, "STONE")
+        for i, text in enumerate(texts):
+            sheet.space.add_text(text, dxfattribs={"layer": "STONE", "insert": (k + 0.3, 0.2 + 0.4 * i)})
+    sheet.space.add_mtext("A6", dxfattribs={"layer": "STONE", "insert": (9.0, 0.5)})
+    sheet.space.add_text("corner", dxfattribs={"layer": "CONCIO_NAMES", "insert": (4.6, 0.6)})
+    path = sheet.saved(tmp_path)
+    names = [b.name for b in model_from_dxf(path).bodies]
+    assert names[0] == "A1"
+    assert names[4] == "corner"
+    assert all(name.startswith("h") for name in names[1:4])
+    told = [f.sentence for f in read_drawing(path).faults]
+    assert "5 TEXT on layer 'STONE' left out: only closed polylines and circles become blocks" in told
+    assert "1 MTEXT on layer 'STONE' left out: only closed polylines and circles become blocks" in told
+
+
 @pytest.mark.parametrize(
     ("draw", "message"),
     [

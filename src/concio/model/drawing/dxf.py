@@ -18,7 +18,7 @@ What a layer means is said in a table (:mod:`concio.model.drawing.layers`), or b
     Holes in the blocks they lie in.
 ``CONCIO_NAMES``
     TEXT or MTEXT that stands in a block gives it its name; a block without one is called ``h`` and its handle, as in
-    ``h2F``.
+    ``h2F``. So does a text on a layer of blocks, if it is the only one in its block and no other block has the same.
 ``CONCIO_SUPPORT_X``, ``_Y``, ``_XY``
     A LINE or polyline along edges, or a POINT on an outline, holds the block it lies on in these directions.
 ``CONCIO_LOAD_PRESSURE_<value>_<group>``
@@ -32,9 +32,9 @@ What a layer means is said in a table (:mod:`concio.model.drawing.layers`), or b
 Any other layer
     Blocks; the layer's name is kept, and is the key that gives them a material.
 
-Everything that is not a closed outline on a layer of blocks is left out and counted: texts, dimensions, hatches. A LINE
-or an ARC there is a fault, since blocks may have been drawn with single lines; a layer that is ignored may hold any.
-Every fault names the handle of its entity and the place.
+Everything that is not a closed outline on a layer of blocks is left out and counted: other texts, dimensions, hatches.
+A LINE or an ARC there is a fault, since blocks may have been drawn with single lines; a layer that is ignored may hold
+any. Every fault names the handle of its entity and the place.
 """
 
 from __future__ import annotations
@@ -206,6 +206,7 @@ def read_drawing(
     loads: list[tuple[Load, str]] = []
     faults: list[DxfFault] = []
     names: list[tuple[str, Array]] = []
+    written: list[tuple[str, Entity]] = []
     ties: list[DrawnTie] = []
     ignored: dict[tuple[str, str], Counter[str]] = {}
     lost: Counter[tuple[str, str]] = Counter()
@@ -242,6 +243,8 @@ def read_drawing(
                 faults.append(_fault("place", e, wanted))
                 continue
             loads += [(replace(use.load, **{"at": a} if point else {"edge": (a, b)}), e.handle) for a, b in edges]
+        elif e.kind in ("TEXT", "MTEXT") and e.text.strip():
+            written.append((" ".join(e.text.split()), e))
         else:
             found = outline_of(e, chord)
             if found is None:
@@ -253,6 +256,7 @@ def read_drawing(
     for (layer, why), kinds in ignored.items():
         what = ", ".join(f"{many:,} {kind}" for kind, many in kinds.items())
         left_out.append(f"{what} on layer '{layer}', which is {why}")
+    names += _names_in_blocks(outlines, names, written, lost)
     for (layer, kind), many in lost.items():
         text = f"{many} {kind} on layer '{layer}' left out: only closed polylines and circles become blocks"
         serious = kind in ("LINE", "ARC")
@@ -307,6 +311,36 @@ def _fault(kind: DxfFaultKind, entity: Entity, text: str) -> DxfFault:
     place = f" at ({at[0]:.6g}, {at[1]:.6g}) m" if len(entity.points) else ""
     sentence = f"entity {entity.handle} on layer '{entity.layer}'{place}: {text}"
     return DxfFault(kind, entity.handle, entity.layer, at, sentence)
+
+
+def _names_in_blocks(
+    outlines: Sequence[Outline],
+    names: Sequence[tuple[str, Array]],
+    written: Sequence[tuple[str, Entity]],
+    lost: Counter[tuple[str, str]],
+) -> list[tuple[str, Array]]:
+    """Return texts on the layers of blocks that name their block: the only text in it, and in no other block.
+
+    Blocks that a text of a layer of names stands in have that name. All other texts are lost: notes, and words that
+    many blocks have, such as their material.
+    """
+    shapes = [shapely.Polygon(o.points).buffer(0) if len(o.points) > 2 else shapely.Polygon() for o in outlines]
+    tree = shapely.STRtree(shapes)
+
+    def inside(at: Array) -> int | None:
+        own = [int(k) for k in tree.query(shapely.Point(at), predicate="within") if outlines[k].use.use != "hole"]
+        return min(own, key=lambda k: shapes[k].area) if own else None
+
+    taken = {inside(at) for _, at in names}
+    blocks = [inside(e.points[0]) for _, e in written]
+    texts, of_block = Counter(text for text, _ in written), Counter(blocks)
+    found = []
+    for (text, e), block in zip(written, blocks, strict=True):
+        if block is None or block in taken or of_block[block] > 1 or texts[text] > 1:
+            lost[e.layer, e.kind] += 1
+        else:
+            found.append((text, e.points[0]))
+    return found
 
 
 def _named(
