@@ -10,6 +10,7 @@ import shapely
 from concio.arguments import closest
 from concio.errors import InputError
 from concio.model.model import Model
+from concio.model.polyhedron import Polyhedron
 
 NEAR = 1e-6
 """Distance from a body, over the size of the model, at which an end of a tie is still on it."""
@@ -51,11 +52,11 @@ def _body_at(model: Model, tie: str, before: str, point: np.ndarray) -> str:
     slack = NEAR * model.size
     found = []
     for body in model.bodies if model.dim == 3 else model.outlines:
-        corners = np.asarray(body.vertices if model.dim == 3 else body.outline)
-        if model.dim == 3:
+        if isinstance(body, Polyhedron):
+            corners = np.asarray(body.vertices)
             on = bool((point >= corners.min(0) - slack).all() and (point <= corners.max(0) + slack).all())
         else:
-            on = bool(shapely.Polygon(corners).distance(shapely.Point(point)) <= slack)
+            on = bool(shapely.Polygon(np.asarray(body.outline)).distance(shapely.Point(point)) <= slack)
         if on:
             away = 0.0 if body.name == before else 1.0 + float(np.linalg.norm(np.asarray(body.centroid) - point))
             found.append((away, body.name))

@@ -7,8 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from concio import Body, InputError, JointLaw, JointRule, Load, Model, Rigid, Tie
+import concio
+from concio import Body, InputError, JointLaw, JointRule, Load, Model, Polyhedron, Rigid, Tie
 from concio.analysis.seismic.strengthening import Measure
+from concio.contact.assembly import assemble
 from seismic_walls import courses
 
 
@@ -87,3 +89,50 @@ def test_a_buttress_stands_beside_the_wall_with_its_width_and_height(
     assert len(made.bodies) == len(model.bodies) + 1
     with pytest.raises(InputError, match="has no ground under it"):
         measure.applied(model, 20.0)
+
+
+@pytest.mark.parametrize(("side", "axis", "sense"), [("left", 0, -1), ("+x", 0, 1), ("-y", 1, -1), ("+y", 1, 1)])
+def test_a_buttress_in_space_stands_along_the_wall(side: str, axis: int, sense: int) -> None:
+    base = Polyhedron.box("ground", (-5, -5, -1), (5, 5, 0), kind="fixed")
+    wall = Polyhedron.box("wall", (-0.2, -1.0, 0.0), (0.2, 1.0, 3.0), kind="rigid")
+    model = Model((base, wall), {"block": Rigid(20.0)}, {"joint": JointLaw(0.6)}, loads=(Load("weight", (0, 0, -1)),))
+    measure = Measure("buttress", ("wall",), side=side, height=2.0, unit_weight=17.0)
+    assert measure.most(model) == 2.0
+    made = measure.applied(model, 0.5)
+    points = np.asarray(made.bodies[-1].vertices)
+    face = np.asarray(wall.vertices)[:, axis]
+    near, far = (face.min(), face.min() - 0.5) if sense < 0 else (face.max(), face.max() + 0.5)
+    assert sorted((points[:, axis].min(), points[:, axis].max())) == pytest.approx(sorted((near, far)))
+    other = 1 - axis
+    assert np.ptp(points[:, other]) == pytest.approx(np.ptp(np.asarray(wall.vertices)[:, other]))
+    assert (points[:, 2].min(), points[:, 2].max()) == pytest.approx((0.0, 2.0))
+    assert len(assemble(made).detection.interfaces) == 3
+    with pytest.raises(InputError, match="no ground under it"):
+        measure.applied(model, 7.0)
+
+
+def test_a_buttress_in_space_has_the_multiplier_of_the_one_in_the_plane() -> None:
+    """A wall of one block that is pushed over its buttress."""
+    flat = Model(
+        (Body("ground", np.array([[-5, -1], [5, -1], [5, 0], [-5, 0.0]]), kind="fixed", thickness=2.0),
+         Body("wall", np.array([[-0.2, 0], [0.2, 0], [0.2, 3], [-0.2, 3.0]]), kind="rigid", thickness=2.0)),
+        {"block": Rigid(20.0)}, {"joint": JointLaw(0.9)},
+        loads=(Load("weight", (0, -1)), Load("weight", (-1, 0), group="live")),
+    )  # fmt: skip
+    deep = Model(
+        (Polyhedron.box("ground", (-5, -5, -1), (5, 5, 0), kind="fixed"),
+         Polyhedron.box("wall", (-0.2, -1.0, 0.0), (0.2, 1.0, 3.0), kind="rigid")),
+        {"block": Rigid(20.0)}, {"joint": JointLaw(0.9)},
+        loads=(Load("weight", (0, 0, -1)), Load("weight", (-1, 0, 0), group="live")),
+    )  # fmt: skip
+    measure = Measure("buttress", ("wall",), side="left", height=3.0)
+    found = [concio.limit(measure.applied(m, 0.6), path=False, search=False).associated.multiplier
+             for m in (flat, deep)]  # fmt: skip
+    bare = concio.limit(flat, path=False, search=False).associated.multiplier
+    assert found[1] == pytest.approx(found[0], rel=1e-6)
+    assert found[0] > 1.5 * bare
+
+
+def test_a_buttress_in_the_plane_has_no_side_along_y() -> None:
+    with pytest.raises(InputError, match="no side '-y' in the plane"):
+        Measure("buttress", ("c1",), side="-y").applied(pillar(0.0), 0.3)

@@ -14,20 +14,17 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-import numpy as np
 from scipy.optimize import brentq
 
 from concio.analysis.entry_point import entry_point
 from concio.analysis.seismic.assess import assess
 from concio.analysis.seismic.assessment import Assessment
+from concio.analysis.seismic.buttress import SIDES, buttress_box, with_buttress
 from concio.analysis.seismic.weakest_mechanism import chosen_bodies
 from concio.analysis.tie_places import tie_at_height
 from concio.arguments import closest, strict
-from concio.contact.separate import surroundings
 from concio.display import number
 from concio.errors import InputError, NoEquilibriumError
-from concio.model.body import Body
-from concio.model.materials import Rigid
 from concio.model.model import Model
 from concio.model.rules import JointRule
 
@@ -52,12 +49,12 @@ class Measure:
     ----------
     kind : {"tie", "mass", "buttress", "grout"}
         "tie": the yield force of a tie of the model [kN]; "mass": weight on bodies, which pushes as well [kN];
-        "buttress": the width of a block against a face, in the plane [m]; "grout": cohesion in the joints of a zone
+        "buttress": the width of a block against a face [m]; "grout": cohesion in the joints of a zone
         [kN/m2], which holds what slides: joints have no tensile strength in an assessment.
     of : tuple of str
         The name of the tie; for the other kinds bodies by name, role, layer or pattern.
-    side : {"left", "right"}
-        Of a buttress: at which side of these bodies it stands.
+    side : {"left", "right", "-x", "+x", "-y", "+y"}
+        Of a buttress: at which side of these bodies it stands; in space "left" is -x.
     height : float, optional
         Of a buttress, from the foot of these bodies [m]; by default all of theirs.
     unit_weight : float
@@ -88,9 +85,9 @@ class Measure:
         if self.heights and self.kind != "tie":
             msg = f"a {self.kind} has no heights to choose from"
             raise InputError(msg, hint="heights are those of a tie")
-        if self.side not in ("left", "right"):
+        if self.side not in SIDES:
             msg = f"a buttress has no side '{self.side}'"
-            raise InputError(msg, hint=closest(self.side, ("left", "right")))
+            raise InputError(msg, hint=closest(self.side, tuple(SIDES)))
         if not self.of or (self.kind == "tie" and len(self.of) != 1):
             msg = "a strengthening says what it is of: one tie, or bodies"
             raise InputError(msg, hint='for example of = ["t1"]')
@@ -121,8 +118,8 @@ class Measure:
             return sum(model.materials[b.material].unit_weight * b.volume for b in model.free_bodies)
         if self.kind == "grout":
             return STRONGEST_GROUT
-        low, high = _reach(self, model)
-        return float(high[1] - low[1])
+        low, high = buttress_box(model, chosen_bodies(model, "buttress", self.of), self.side, self.height, 0.0)
+        return float(high[-1] - low[-1])
 
 
 @dataclass(frozen=True, eq=False)
@@ -343,35 +340,11 @@ def _mass(measure: Measure, model: Model, amount: float) -> Model:
     return replace(model, bodies=tuple(bodies), materials=materials)
 
 
-def _reach(measure: Measure, model: Model) -> tuple[np.ndarray, np.ndarray]:
-    """Return the low and the high corner of a buttress as high as it is to be, and of no width."""
-    if model.dim != 2:
-        msg = "the width of a buttress is found in the plane alone"
-        raise InputError(msg, hint="draw the section of the wall, or draw buttresses of several widths in space")
-    points = np.vstack([model.bodies[i].vertices for i in chosen_bodies(model, "buttress", measure.of)])
-    low, high = points.min(0), points.max(0)
-    at = low[0] if measure.side == "left" else high[0]
-    top = high[1] if measure.height is None else low[1] + measure.height
-    return np.array([at, low[1]]), np.array([at, top])
-
-
 def _buttress(measure: Measure, model: Model, amount: float) -> Model:
-    low, high = _reach(measure, model)
+    chosen = chosen_bodies(model, "buttress", measure.of)
     if amount <= 0:
         return model
-    a, b = sorted((low[0], low[0] + (amount if measure.side == "right" else -amount)))
-    near = 1e-6 * surroundings(model).of(chosen_bodies(model, "buttress", measure.of))
-    under = [g for g in model.outlines if g.kind == "fixed" and abs(g.vertices[:, 1].max() - low[1]) <= near
-             and g.vertices[:, 0].min() <= a + near and g.vertices[:, 0].max() >= b - near]  # fmt: skip
-    if not under:
-        where = f"from x = {a:.4g} to {b:.4g} m at z = {low[1]:.4g} m"
-        msg = f"a buttress of {amount:.4g} m has no ground under it, {where}"
-        raise InputError(msg, where="strengthening", hint="make the fixed body wider, or the largest amount smaller")
-    outline = np.array([[a, low[1]], [b, low[1]], [b, high[1]], [a, high[1]]])
-    thick = max(model.outlines[i].thickness for i in chosen_bodies(model, "buttress", measure.of))
-    body = Body("buttress", outline, kind="rigid", material="buttress", thickness=thick, role="buttress")
-    materials = {**model.materials, "buttress": Rigid(unit_weight=measure.unit_weight)}
-    return replace(model, bodies=(*model.bodies, body), materials=materials)
+    return with_buttress(model, chosen, measure.side, measure.height, amount, measure.unit_weight)
 
 
 def _grout(measure: Measure, model: Model, amount: float) -> Model:

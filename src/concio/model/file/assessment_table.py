@@ -199,7 +199,7 @@ class StrengthenTable(Table):
     largest :
         Largest amount that is tried, in kN, m or kN/m2.
     side :
-        Of a buttress: at which side of these bodies it stands.
+        Of a buttress: at which side of these bodies it stands; along y in space alone.
     height :
         Of a buttress; by default that of these bodies.
     unit_weight :
@@ -212,7 +212,7 @@ class StrengthenTable(Table):
     of: list[Name]
     zeta: Number = 1.0
     largest: Number | None = None
-    side: Literal["left", "right"] = "left"
+    side: Literal["left", "right", "-x", "+x", "-y", "+y"] = "left"
     height: Length | None = None
     unit_weight: UnitWeight = 20.0
     heights: list[Length] = Field(default_factory=list)
