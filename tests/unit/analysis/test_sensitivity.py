@@ -118,6 +118,12 @@ def test_a_mechanism_of_an_assessment_in_closed_form() -> None:
         assert text.count("<figure") == 5
 
 
-def test_a_mechanism_that_slides_has_no_derivatives_by_duality() -> None:
+def test_a_mechanism_that_slides_has_its_derivatives_by_virtual_work() -> None:
+    """alpha_0 = mu; an upper bound alone, of dilatant joints, has none."""
     found = concio.assess(overturning(3, friction=0.08), site=site(), direction="left", levels=["SLV"])
-    assert found.sensitivity() is None
+    told = found.sensitivity()
+    assert told is not None
+    assert told["friction of joint"].rate == pytest.approx(1.0, abs=1e-8)
+    assert found.worst is not None
+    bound = replace(found.worst, found=replace(found.worst.found, flow="associated"))
+    assert replace(found, mechanisms=(bound,)).sensitivity() is None
