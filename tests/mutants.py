@@ -177,6 +177,15 @@ def tests_for(path: str) -> list[str]:
     return list(ROOMS[max(places, key=len)])
 
 
+def copied(root: Path) -> Path:
+    """Return a copy of the package in ``src`` of a folder that has everything else of the repository beside it."""
+    package = Path(shutil.copytree(SOURCE, root / "src" / "concio"))
+    for beside in HERE.parent.iterdir():
+        if beside.name != "src":
+            (root / beside.name).symlink_to(beside)
+    return package
+
+
 class Traces:
     """Which test ran which line, from a data file of coverage.py.
 
@@ -270,7 +279,7 @@ def main() -> int:
     counts: Counter[str] = Counter()
     with tempfile.TemporaryDirectory() as folder:
         for k in range(chosen.jobs):
-            copies.put(Path(shutil.copytree(SOURCE, Path(folder) / str(k) / "concio")))
+            copies.put(copied(Path(folder) / str(k)))
 
         def attempt(mutant: Mutant) -> tuple[Mutant, str | None]:
             if time.monotonic() > last:

@@ -60,6 +60,7 @@ def test_it_is_read_as_the_wall_it_means():
     np.testing.assert_allclose(total, (0, -weight - 0.5 * 5 * (24 + 10)), rtol=3e-4, atol=1e-9)
 
 
+@pytest.mark.long
 def test_check_says_what_was_done_to_it():
     code, out, err = run("check", EXAMPLES / "facade.toml")
     assert (code, err) == (0, "")

@@ -32,6 +32,7 @@ def last_value(source: str, names: dict[str, Any]) -> Any:
     return None if last is None else eval(compile(ast.Expression(last.value), "cell", "eval"), names)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda p: p.stem)
 def test_a_notebook_runs_and_every_cell_shows_something(
     path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

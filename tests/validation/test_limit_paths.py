@@ -30,6 +30,7 @@ def pushover(name, compliance=1e-4, **laws):
     return weight_then(a, MU, push, compliance=compliance, until=0.1, control=push / push.sum(), **laws)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", QUICK)
 def test_associated_path_ends_at_the_limit_multiplier(name):
     path, found = pushover(name, dilatancy=MU)
@@ -41,6 +42,7 @@ def test_associated_path_ends_at_the_limit_multiplier(name):
     assert energy_error(path, found) <= 1e-11
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", QUICK)
 def test_coulomb_path_stays_below_and_is_repeatable(name):
     path, found = pushover(name)

@@ -82,6 +82,7 @@ def test_changes_that_change_nothing_change_nothing() -> None:
     np.testing.assert_allclose(found.displacement, plain.displacement, rtol=1e-12, atol=1e-15)
 
 
+@pytest.mark.long
 def test_laws_that_agree_with_no_answer_are_undecided() -> None:
     def flips(law: object, seen: object) -> object:
         return replace(law, cohesion=np.where(seen.slip > 1e-9, 1e3, 0.0))

@@ -43,6 +43,7 @@ def wall(friction: float, at: float) -> Model:
     return replace(made, ties=(rod,), loads=(*made.loads, roof))
 
 
+@pytest.mark.long
 @settings(max_examples=sample(2, 10), deadline=None)
 @given(st.floats(0.3, 0.9), st.floats(0.8, 2.9), st.floats(1.05, 1.6))
 def test_the_least_tie_is_that_of_a_bisection(friction: float, at: float, more: float) -> None:

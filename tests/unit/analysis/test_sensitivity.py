@@ -70,6 +70,7 @@ def test_an_arch_under_a_load_off_its_crown() -> None:
     compare(model, tuple(chosen))
 
 
+@pytest.mark.long
 def test_where_a_block_slides_and_tips_at_once_both_sides_are_told() -> None:
     """lambda = min(mu, b / h): beside the edge it is one of the two."""
     pillar = concio.column(width=0.5, height=2.0, blocks=1, block="rigid", horizontal=1.0, friction=0.25)

@@ -21,6 +21,7 @@ def leading(model: concio.Model) -> LeadingNumber | None:
     return leading_number(result, concio.state_sensitivity(result))
 
 
+@pytest.mark.long
 @settings(max_examples=sample(4, 20), deadline=None)
 @given(st.floats(0.5, 4.0), st.floats(5.0, 30.0), st.floats(1.0, 300.0))
 def test_a_pillar_shortens_by_weight_and_pressure(height: float, weight: float, pressure: float) -> None:

@@ -316,6 +316,7 @@ def test_the_same_fill_acts_in_one_step_in_a_path_and_in_a_push() -> None:
     assert pushed.multiplier[-1] < pushed.peak  # every element of the soil that yields is within a step of the curve
 
 
+@pytest.mark.long
 def test_a_study_varies_ring_and_fill_with_the_bridge_as_its_model(tmp_path: Path) -> None:
     variables = [
         concio.variable("ring", "uniform", keys="bridge.ring", low=0.20, high=0.23),

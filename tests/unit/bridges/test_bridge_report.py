@@ -59,6 +59,7 @@ class Balanced(HTMLParser):
         assert self.open.pop() == tag
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("language", "words"), [("en", "What matters most"), ("it", "Conta di più")])
 def test_the_datum_that_matters_most_is_told_in_a_sentence(
     language: str, words: str, found: concio.BridgeResult, page_in: Callable[[str], str]
@@ -152,6 +153,7 @@ def test_soil_at_its_largest_pressure_is_no_joint_that_crushes(found: concio.Bri
     assert found.settled.crushed == 0
 
 
+@pytest.mark.long
 def test_the_command_writes_report_curve_and_numbers(tmp_path: Path) -> None:
     out = tmp_path / "result"
     code, _, err = run("bridge", written(tmp_path), "--step", "0.8 m", "--fine", "0.4 m", "--checked", "2", "--worst",

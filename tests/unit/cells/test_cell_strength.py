@@ -86,6 +86,7 @@ def test_the_half_spaces_are_found_exactly(name):
         assert faces.offsets[k] == pytest.approx(offset, rel=1e-10)
 
 
+@pytest.mark.long
 def test_every_half_space_is_proven_by_its_mechanism_and_every_point_is_carried():
     cell = concio.cell(bond="rubble", length=0.8, height=0.6, stone=0.3, seed=1, block="rigid",
                        friction=concio.JointLaw(0.5, cohesion=2.0, tensile_strength=1.0))  # fmt: skip

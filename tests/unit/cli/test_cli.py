@@ -78,6 +78,7 @@ def test_load_factors_scale_the_answer(panel: Path) -> None:
     assert factors_of(["a=1", "b = 2.5"]) == {"a": 1.0, "b": 2.5}
 
 
+@pytest.mark.long
 def test_out_holds_summary_report_and_figures(panel: Path) -> None:
     code, out, _ = run("run", panel, "--out", "result")
     assert code == 0
@@ -446,6 +447,7 @@ main()
 """
 
 
+@pytest.mark.long
 def test_a_reader_that_has_gone_changes_no_exit_code(panel: Path) -> None:
     """A command whose output nobody reads on ends as it would, with its verdict and its files."""
     panel.write_text(SLIDES)

@@ -49,6 +49,7 @@ def test_the_command_prints_one_object_with_the_verdict() -> None:
     assert told["future"]["stands"] is True
 
 
+@pytest.mark.long
 def test_the_command_writes_report_figures_and_numbers(tmp_path: Path) -> None:
     place = tmp_path / "out"
     code, out, err = run("diagnose", EXAMPLE, "--out", place, "--language", "it")

@@ -44,6 +44,7 @@ def test_limit_of_a_slender_block(slender: Path) -> None:
     assert data["coulomb_path_multiplier"] == pytest.approx(0.2, rel=1e-6)
 
 
+@pytest.mark.long
 def test_limit_draws_its_mechanisms(slender: Path, tmp_path: Path) -> None:
     """Numbers and a figure of each motion go to --out, and JSON holds nothing that JSON cannot say."""
     place = tmp_path / "limit"

@@ -148,6 +148,7 @@ def test_what_no_candidate_explains_is_told() -> None:
     assert any("may have been missed" in line for line in found.verdict.limits)
 
 
+@pytest.mark.long
 def test_that_there_is_no_cause_is_told_of_fine_paths_alone() -> None:
     cracks = spread_cracks(0.01)
     none = diagnosed(flat_arch(), cracks, [SINKS], method="steps")

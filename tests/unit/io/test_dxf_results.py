@@ -88,6 +88,7 @@ def test_the_drawing_reads_back_as_the_model(tmp_path: Path) -> None:
         assert np.asarray(one.rings[0]) == pytest.approx(np.asarray(other.rings[0]), abs=1e-9)
 
 
+@pytest.mark.long
 def test_export_writes_results_and_says_where_it_cannot(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     assert run("new", "arch", "a.toml")[0] == 0

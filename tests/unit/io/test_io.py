@@ -199,6 +199,7 @@ def test_codec_stores_no_strangers() -> None:
         Encoder({}, {}).encode(object())
 
 
+@pytest.mark.long
 def test_result_directory_holds_everything(panel: Result, tmp_path: Path) -> None:
     target = tmp_path / "deep" / "out"
     written = write_result(panel, target)

@@ -161,6 +161,7 @@ def test_what_is_interrupted_leaves_everything_as_it_was(tmp_path: Path) -> None
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.long
 @pytest.mark.skipif(os.name != "posix", reason="kills a process")
 def test_a_killed_run_is_cleaned_up_by_the_next_and_told(model: Path) -> None:
     code = (

@@ -211,6 +211,7 @@ def test_tables_hold_holes(tmp_path, suffix):
             np.testing.assert_array_equal(ring, other)
 
 
+@pytest.mark.long
 def test_drawings_hold_holes_and_exports_give_them_back(tmp_path):
     document = ezdxf.new("R2010", units=4)
     space = document.modelspace()

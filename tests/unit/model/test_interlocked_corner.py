@@ -46,6 +46,7 @@ def by_formula(n: int, share: float) -> float:
     return min(found)
 
 
+@pytest.mark.long
 def test_interlocked_blocks_hold_what_the_full_weight_above_their_joints_does() -> None:
     """Joint k of a comb carries k courses, n (n + 1)/2 in all: the Circolare counts 0.4 of it in place of 0.5."""
     found = concio.assess(toothed(6), site=site(), levels=["SLD"], direction="right", live="live")

@@ -32,6 +32,7 @@ def test_free_fall_keeps_momentum():
     assert found.energy.error < 1e-12
 
 
+@pytest.mark.long
 def test_sliding_block_stops_where_it_should():
     """v0 = 2 m/s, mu = 0.3: v0^2 / (2 mu g)."""
     model = standing(height=0.4, friction=0.3)
@@ -42,6 +43,7 @@ def test_sliding_block_stops_where_it_should():
     assert found.energy.error < 1e-9
 
 
+@pytest.mark.long
 def test_newmark_block_under_a_rectangular_pulse():
     """A = 0.5 g for 0.3 s, mu = 0.2: (A g T)^2 / (2 mu g) (1 - mu / A)."""
     pulse = concio.Pulse("rectangular", 0.5 * G, 0.3)
@@ -61,6 +63,7 @@ def test_newmark_block_on_a_base_that_moves():
     assert moving.end.centre[1, 0] - ground == pytest.approx(found.end.centre[1, 0], abs=1e-9)
 
 
+@pytest.mark.long
 def test_rocking_block_meets_housner():
     """From half the critical angle: the time to the first zero by energy, the next peak by Housner's impact."""
     first, R = 0.5 * ALPHA, np.hypot(0.2, 0.6)
@@ -97,6 +100,7 @@ def test_a_strong_pulse_overturns_and_the_motion_ends():
     assert found.end.time < 4.0
 
 
+@pytest.mark.long
 def test_a_motion_goes_on_from_where_it_ended():
     model = standing(tilt=0.3 * ALPHA)
     options = {"step": 1e-3, "gravity": G, "adaptive": False}

@@ -40,6 +40,7 @@ def test_what_returns_everything_returns_to_its_height_at_any_step(step):
     assert rebound(1.0, step) == pytest.approx(1.0, abs=1e-5)  # the highest point lies between two steps
 
 
+@pytest.mark.long
 def test_half_the_velocity_returns_to_a_quarter_of_the_height_at_first_order():
     steps = (2e-3, 2.5e-4 * sample(3, 1))
     off = [abs(rebound(0.5, step) - 0.25) for step in steps]
@@ -158,6 +159,7 @@ def kept_by(share, step):
     return float(np.sqrt(after / before)), wanted
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("share", [0.22, 0.25][: sample(1, 2)])
 def test_a_lintel_is_hit_when_the_feet_are(share):
     got, wanted = kept_by(share, 5e-4)

@@ -141,6 +141,7 @@ def test_elastic_bodies_and_holes_are_drawn_as_they_are():
     assert len(standing_.rings(2)[0]) == 2 * (4 + 2)
 
 
+@pytest.mark.long
 def test_push_and_shake_from_the_command_line(tmp_path):
     file = tmp_path / "pillar.toml"
     file.write_text(PILLAR)

@@ -78,6 +78,7 @@ def test_a_column_that_leans_too_far_does_not_stand(tmp_path):
     assert "does not stand before the ground moves" in told["sentence"]
 
 
+@pytest.mark.long
 def test_a_motion_goes_on_after_the_signal_until_rest_or_a_fall(tmp_path):
     """The same pillar under two rectangular pulses: one rocks it, one turns it over long after its end."""
     path = file_of(tmp_path)
@@ -97,6 +98,7 @@ def test_what_still_moves_at_the_time_asked_for_is_said_to_move():
     assert "still moves at 0.35 s" in found.verdict.sentence
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("share", "passed"), [(1.3, True), (0.7, False)])
 def test_a_block_past_its_own_equilibrium_has_fallen_though_it_has_not_yet_arrived(share, passed):
     """Pushed by hand to a share of its critical angle of 0.32 and let go: 1.3 falls, 0.7 comes back."""
@@ -125,6 +127,7 @@ def test_a_restart_counts_rotation_from_the_first_start():
     assert two.largest_rotation[1] == pytest.approx(np.abs(two.end.rotation[1]), rel=1e-12)
 
 
+@pytest.mark.long
 def test_a_floor_that_has_turned_is_the_floor_that_shakes():
     """On a floor turned by 8 degrees the pillar leans: a pulse that does nothing to it elsewhere turns it over."""
     pulse = concio.Pulse("rectangular", 0.20 * G, 0.6)
@@ -199,6 +202,7 @@ def test_a_push_says_what_it_multiplies_and_what_acts_beside():
     assert acting["weights"].factor == pytest.approx(found.peak)
 
 
+@pytest.mark.long
 def test_every_place_says_what_the_verdict_says(tmp_path):
     path = file_of(tmp_path)
     for command, options in (("push", ()), ("shake", ("--pulse", "sine,0.1 g,0.1 s", "--duration", "0.3 s"))):
@@ -211,6 +215,7 @@ def test_every_place_says_what_the_verdict_says(tmp_path):
         assert summary["sentence"].split(". ")[0] in (tmp_path / command / "report.html").read_text()
 
 
+@pytest.mark.long
 def test_elastic_blocks_that_slide_past_the_end_of_a_wall_fall_on():
     """Faces that have slid past each other share no length: that ended in an index error."""
     walls = [box("left", -1.0, 0.0, 0.5, 1.5, kind="fixed"), box("right", 1.0, 2.0, 0.5, 1.5, kind="fixed")]

@@ -124,6 +124,7 @@ def test_records_that_belong_together_are_not():
     assert Ground((record(5e-3, 101, 1.0), record(5e-3, 101, 0.9))).attention == ()
 
 
+@pytest.mark.long
 def test_what_falls_past_everything_ends_a_motion_that_began_as_described():
     model = blocks(((-0.1, -0.1, 0.5), (0.1, 0.1, 0.7)), floor=((1.0, 1.0, 0.0), (2.0, 2.0, 0.4)))
     found = concio.dynamics(model, start="as described", duration=1e4, gravity=G)

@@ -62,6 +62,7 @@ def test_left_is_the_mirror_of_right(pushed):
     assert left.rotation == pytest.approx(-pushed.rotation, abs=1e-9)
 
 
+@pytest.mark.long
 def test_any_control_follows_the_same_curve(pushed):
     """Points of the curve do not depend on what controls it."""
     top = concio.ControlPoint("block", (0.0, 1.0))
@@ -200,6 +201,7 @@ def tied(stiffness, **options):
     return replace(model, ties=(tie,))
 
 
+@pytest.mark.long
 def test_a_tie_yields_and_the_strength_ends_where_weight_and_tie_balance():
     """Peak: weight 4 and tie 1 about the toe; at the end the force of the tie holds what the weight overturns."""
     found = concio.push(tied(1e5, yield_force=1.0))
@@ -212,12 +214,14 @@ def test_a_tie_yields_and_the_strength_ends_where_weight_and_tie_balance():
     assert end[0] * pull[1] - end[1] * pull[0] == pytest.approx(4.0 * centroid[0], rel=1e-3)
 
 
+@pytest.mark.long
 def test_a_tie_that_breaks_leaves_the_block_alone():
     found = concio.push(tied(1e5, yield_force=1.0, break_elongation=0.02))
     assert found.capacity == pytest.approx(0.1, rel=1e-6)
     assert found.end.ties.broken.all()
 
 
+@pytest.mark.long
 def test_a_block_that_hangs_straight_on_a_stiff_tie_stretches_it():
     """Its foot is pulled away until it hangs in line with the tie: from then on the load is the tension."""
     k, W = 1e5, 4.0
@@ -255,6 +259,7 @@ def test_a_crushing_toe_moves_the_hinge_inwards(cap, most):
     assert found.certified
 
 
+@pytest.mark.long
 def test_blocks_that_could_all_slide_part():
     """Every course slides at the same share of the weights; which block goes is decided by a millionth of them."""
     curve = concio.push(concio.wall(length=0.5, height=0.25, block="rigid", friction=0.6), step=0.005, until=1e-4)

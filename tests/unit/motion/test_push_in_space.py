@@ -178,6 +178,7 @@ def test_a_tie_in_space_adds_its_force_at_its_present_place():
         assert found.multiplier[k] == pytest.approx(wanted, rel=2e-4)
 
 
+@pytest.mark.long
 def test_a_pillar_on_a_floor_that_has_turned_in_space_carries_what_hand_statics_says():
     angle = np.deg2rad(4.0)
     leaning = replace(TALL, supports=(concio.Support("turn", "floor", rotation=(0.0, angle, 0.0)),))
@@ -187,6 +188,7 @@ def test_a_pillar_on_a_floor_that_has_turned_in_space_carries_what_hand_statics_
         assert found.peak == pytest.approx(np.tan(np.arctan(A / H) - side * angle), rel=3e-4)
 
 
+@pytest.mark.long
 def test_two_blocks_that_stand_apart_are_pushed_each_by_itself():
     far = blocks(((-A, -B, 0.0), (A, B, 2 * H)), ((-0.4, 2.0, 0.0), (0.4, 2.8, 2 * H)))
     found, alone = concio.push(far), concio.push(TALL)

@@ -76,6 +76,7 @@ def test_a_peak_is_as_hand_statics_says_but_for_what_joints_give_way():
         assert concio.push(model, step=step).peak == pytest.approx(0.25, rel=1e-5)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(sample(1, 8)))
 def test_bodies_meet_where_they_do(seed):
     """The top corner of a pillar that turns about its toe has moved by the gap; nothing is carried across before.

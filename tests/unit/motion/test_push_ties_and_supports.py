@@ -71,6 +71,7 @@ def test_a_direction_aside_of_the_live_loads_is_refused():
         concio.push(pillar(loads=(live,)), direction=(0.0, 1.0))
 
 
+@pytest.mark.long
 def test_motion_that_is_mirrored_is_the_mirrored_motion():
     """Everything mirrored, ties and floor too: the same curve."""
     rod = concio.Tie("rod", "pillar", (-0.2, 1.2), "", (-2.0, 1.2), stiffness=3000.0, yield_force=3.0,
@@ -83,6 +84,7 @@ def test_motion_that_is_mirrored_is_the_mirrored_motion():
     assert [e.kind for e in left.events if "tie" in str(e)] == [e.kind for e in right.events if "tie" in str(e)]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(sample(1, 3)))
 def test_a_tie_pulls_to_its_elongation_at_break_whatever_the_step(seed):
     """A low block that slides with a tie along its motion: friction, and stiffness times the elongation at break."""
@@ -107,6 +109,7 @@ def test_a_tie_pulls_to_its_elongation_at_break_whatever_the_step(seed):
         assert not any("above the peak" in line for line in found.verdict.limits)  # the fall is that of the tie
 
 
+@pytest.mark.long
 def test_a_tie_that_yields_says_so_where_it_does():
     rod = concio.Tie("rod", "pillar", (-0.2, 1.2), "", (-2.0, 1.2), stiffness=3000.0, yield_force=3.0)
     found = concio.push(pillar(ties=(rod,)), step=0.01)

@@ -103,6 +103,7 @@ def test_the_oracle_meets_the_closed_form_of_overturning():
         assert bool(np.abs(turned).max() > 2 * half / high) is falls
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", [16, 20, 6][: sample(1, 3)])  # those left out are among the sixty
 def test_a_rocking_block_moves_as_events_say(seed):
     assert 0.1 < check(seed) < 0.9

@@ -48,6 +48,7 @@ def test_a_block_leaves_its_tie_with_what_it_has_when_that_breaks(seed):
     assert errors[-1] < 1e-3
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(sample(1, 12)))
 def test_a_tie_that_yields_stops_a_block_where_energy_says(seed):
     """The elongation at rest: m v^2 / 2 = F (u - u_y / 2), F the yield force reached at u_y."""

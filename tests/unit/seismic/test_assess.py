@@ -364,6 +364,7 @@ def test_compliant_courses_tend_to_the_monolithic_wall_from_below() -> None:
     assert closed - peaks[1] == pytest.approx((closed - peaks[0]) * 0.3, rel=0.35)  # like one over the stiffness
 
 
+@pytest.mark.long
 def test_a_wall_with_a_door_is_assessed() -> None:
     model = concio.wall(
         length=2.0, height=1.25, block_size=(0.5, 0.25), friction=0.6, block="rigid",

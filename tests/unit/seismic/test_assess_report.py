@@ -69,6 +69,7 @@ def test_a_result_writes_its_own_report(tmp_path: Path) -> None:
     assert "ζ<sub>E</sub>" in found.report(tmp_path / "r.html", language="it").read_text(encoding="utf-8")
 
 
+@pytest.mark.long
 def test_command_writes_report_numbers_and_curves(tmp_path: Path) -> None:
     size = 'size_tie = "roof tie"                 # find the force that brings zeta_E to one\n'
     path = edited(tmp_path, (size, ""), ("[assessment]\n", '[assessment]\nlevels = ["SLV"]\n'))

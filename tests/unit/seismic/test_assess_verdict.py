@@ -111,6 +111,7 @@ def test_what_pushes_up_is_no_weight() -> None:
 # -- the weakest ------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.long
 @settings(max_examples=sample(2, 12), deadline=None)
 @given(st.integers(2, 4), st.data())
 def test_naming_a_part_never_worsens_the_outcome(n: int, data: st.DataObject) -> None:

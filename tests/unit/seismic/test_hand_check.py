@@ -59,6 +59,7 @@ def test_loads_that_push_and_supports_that_hold() -> None:
     assert agreement(bending(8), direction="right", live="live") < 1e-9
 
 
+@pytest.mark.long
 def test_a_wall_in_space_and_one_whose_courses_slide() -> None:
     bodies = (
         Polyhedron.box("ground", (-1, -1, -0.2), (2, 3, 0), kind="fixed"),

@@ -146,6 +146,7 @@ def test_revision_and_date_have_a_place_where_they_are_not_given() -> None:
         assert [rows["revision"], rows["date"]] == cells
 
 
+@pytest.mark.long
 def test_what_was_covered_is_counted_and_named() -> None:
     found = concio.assess(overturning(4), site=site(), mechanisms={"top": ["c4"]})
     rows = {c.kind: c for c in found.covered}

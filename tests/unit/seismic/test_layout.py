@@ -118,6 +118,7 @@ def test_parts_stand_beside_every_line_and_are_counted_by_kind() -> None:
     assert len({p.bodies for p in parts.parts}) == len(parts.parts)
 
 
+@pytest.mark.long
 def test_the_sentence_counts_each_kind() -> None:
     model = wall((0, 0, 0.5, 1.0), (1.2, 0, 1.7, 1.0), (0, 1.0, 1.7, 1.4))
     found = concio.assess(model, site=site(), levels=["SLV"], direction="right", elsewhere=("height", "out of plane"))

@@ -113,6 +113,7 @@ def test_stones_that_reach_across_a_cut_are_cut_and_thin_ones_set_the_thickness(
 # -- mechanisms -------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.long
 @settings(max_examples=sample(2, 12), deadline=None)
 @given(st.floats(0.15, 0.9), st.floats(0.0, 20.0))
 @example(0.5, 5e-255)
@@ -129,6 +130,7 @@ def test_a_wall_overturns_at_its_thickness_over_its_height(thickness: float, roo
     assert all(c.agrees for c in found.hand_checks)
 
 
+@pytest.mark.long
 def test_a_wall_held_at_its_top_bends_between_foot_and_top() -> None:
     """alpha_0(h1) = 2 [(W + N) t / h1 + N t/2 / (h - h1)] / W, at the best of the joints."""
     N, t, h, rows = 20.0, 0.5, 4.0, sample(6, 16)
@@ -167,6 +169,7 @@ def test_a_bearing_near_the_inner_face_tells_the_senses_apart() -> None:
 # -- what is told -----------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.long
 def test_the_least_of_plane_and_strips_decides_and_each_is_reported() -> None:
     found = assessed(facade(0.25))
     assert not any("out of its plane" in line for line in found.verdict.unchecked)

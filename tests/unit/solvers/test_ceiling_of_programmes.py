@@ -31,6 +31,7 @@ def programme(seed: int) -> tuple[np.ndarray, tuple[sp.csc_array, np.ndarray], n
     return A.T @ y + reduced, (sp.csc_array(A), A @ inside), bounds
 
 
+@pytest.mark.long
 @given(SEEDS)
 def test_a_ceiling_above_the_optimum_changes_nothing_and_one_below_ends_the_search(seed: int) -> None:
     cost, (A, b), bounds = programme(seed)

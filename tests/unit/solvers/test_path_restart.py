@@ -17,6 +17,7 @@ from path_helpers import energy_error, least_dissipation, weight_then, worst_cer
 from rigid_walls import FERRIS_TIN_LOI, MU, block_on_incline, wall
 
 
+@pytest.mark.long
 def test_jumps_under_growing_load_lead_to_the_peak_that_controlled_displacement_finds():
     """Two ways of control, the second without any jump, meet in the same collapse."""
     a = wall(FERRIS_TIN_LOI["wall 3"])

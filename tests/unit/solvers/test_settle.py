@@ -150,6 +150,7 @@ def test_right_states_need_no_factor_of_their_own() -> None:
     assert s.factor.count == count
     np.testing.assert_allclose(again.u, 1.0001 * found.u, rtol=1e-9, atol=1e-12)
 
+@pytest.mark.long
 def test_facade_under_its_dead_load():
     """Slivers of a drawing leave pairs all but redundant: refinement stops above rounding, no state is contradicted."""
     pytest.importorskip("ezdxf")

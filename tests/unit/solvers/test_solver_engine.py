@@ -118,6 +118,7 @@ def test_steps_of_a_motion_are_solved_by_the_engine_of_the_model(asked: str, mon
         assert engines_of(lambda model=model: MOVED[asked](model), monkeypatch) == {engine}
 
 
+@pytest.mark.long
 def test_cone_programmes_of_space_are_solved_by_the_engine_of_the_model(monkeypatch: pytest.MonkeyPatch) -> None:
     for engine in ("pardiso", "superlu"):
         wall = replace(WALLS["space"], engine=engine)

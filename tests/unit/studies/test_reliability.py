@@ -33,6 +33,7 @@ def test_a_linear_limit_state_of_normal_variables_is_exact(sds: list[float], fac
     assert list(found.point.values()) == pytest.approx(point, abs=1e-6)
 
 
+@pytest.mark.long
 @given(st.floats(0.05, 0.6), st.floats(0.05, 0.6), st.floats(0.3, 8.0))
 def test_resistance_over_load_both_lognormal_is_exact(of_r: float, of_s: float, ratio: float) -> None:
     r = concio.variable("r", "lognormal", median=ratio, beta=of_r)

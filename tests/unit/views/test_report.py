@@ -89,6 +89,7 @@ class _Links(HTMLParser):
         self.found += [v or "" for k, v in attrs if k in ("src", "href", "srcset", "data", "action")]
 
 
+@pytest.mark.long
 def test_report_fetches_nothing(arched: Result) -> None:
     page = report_html(arched)
     links = _Links()

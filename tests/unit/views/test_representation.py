@@ -71,6 +71,7 @@ def reached(thing: object, name: str, seen: dict[int, tuple[str, object]]) -> No
             reached(value, f"{name}.{key}", seen)
 
 
+@pytest.mark.long
 def test_nothing_that_a_user_holds_prints_its_arrays(held: dict[str, object]) -> None:
     seen: dict[int, tuple[str, object]] = {}
     for name, thing in held.items():

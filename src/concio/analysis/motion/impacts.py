@@ -29,6 +29,9 @@ Array = np.ndarray
 MOST_RETURNED = 4
 """Times at most that the compliance added to joints is taken back in an impact."""
 
+SLOW = 0.5
+"""Share of what was left of it before, above which taking it back goes on too slowly to end."""
+
 RETURNED = 1e-10
 """Share of the velocity of an impact below which what that compliance does to it is nothing."""
 
@@ -129,11 +132,14 @@ class Impact:
         joint, (lent_n, lent_t) = self.joint, self._lent(problem)
         enough = RETURNED * float(np.abs(joint.y0[joint.struck, 0]).max())
         before = counted = np.zeros_like(found.t)
+        left = np.inf
         for _ in range(MOST_RETURNED):
-            grown = np.abs(found.t - before)
+            grown, last = np.abs(found.t - before), left
             left = max(float((lent_n * grown[:, 0]).max()), float((lent_t * grown[:, 1:].max(axis=1)).max()))
             if left <= enough or found.residual > CERTIFIED:
                 return found, Returned(1.0, counted)
+            if left > SLOW * last:
+                break
             before = found.t
             again = self.solver.step(_counted(problem, lent_n, lent_t, before), found.states, found.x, found.t)
             if again.residual > CERTIFIED:
