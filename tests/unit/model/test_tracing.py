@@ -16,7 +16,7 @@ from concio.errors import InputError
 from concio.model.picture.photo import homography
 from concio.model.picture.shared_boundaries import shared_outlines
 from concio.trace import Photo, read_photo, trace_courses, trace_labels, trace_outlines, trace_regions, wire
-from rendered import found_share, rendered, sideways
+from rendered import BEDS, HEADS, bricks, found_share, read_bricks, rendered, sideways
 from samples import sample
 
 WALL = {"block_size": (0.25, 0.125), "length": 1.0, "height": 0.625, "block": "rigid", "unit_weight": 20.0}
@@ -46,6 +46,19 @@ def test_a_head_joint_that_only_noise_has_drawn_is_the_most_doubtful() -> None:
     first, second = found.joints[:2]
     assert (first.kind, first.ends[0][0]) == ("head", pytest.approx(2.3, abs=0.01))
     assert first.strength < 0.7 * second.strength
+
+
+@pytest.mark.parametrize("unit", [(0.20, 0.075), (0.25, 0.08), (0.22, 0.065)])
+def test_the_bricks_of_a_photograph_are_found_and_no_joint_is_invented(unit: tuple[float, float]) -> None:
+    """Stretchers and headers stand in no regular order: other courses say nothing of where a course has its joints."""
+    found = trace_courses(bricks(), unit)
+    beds = sorted(j.ends[0][1] for j in found.joints if j.kind == "bed")
+    assert beds == pytest.approx(BEDS, abs=0.004)
+    for low, expected in zip((0.0, *beds), HEADS, strict=True):
+        heads = [j.ends[0][0] for j in found.joints if j.kind == "head" and min(e[1] for e in j.ends) == low]
+        assert sorted(heads) == pytest.approx(expected, abs=0.01)
+    assert found.joint_width == pytest.approx(0.010, abs=0.002)
+    assert sideways(found.model()) == pytest.approx(sideways(read_bricks()), rel=0.05)
 
 
 def test_a_joint_that_was_painted_over_is_the_most_doubtful_or_missed_beside_it(wall: concio.Model) -> None:

@@ -35,6 +35,13 @@ SHARED = 1.2
 """Weight of what the other courses of the same kind say of a head joint beside what its own course says."""
 WIDTHS = (0.02, 0.04, 0.07, 0.11)
 """Widths of joints that are tried, as shares of the height of a unit."""
+CLEAR, LEAST_SHARED = 6.0, 0.2
+"""Where the joints of a course are clearer than this, in deviations of the noise, other courses count the less the
+clearer they are, down to this share."""
+SHORTEST_AT_EDGE = 0.1
+"""Share of the rough size that a unit at an edge may have where its joint is clear."""
+FULL, BEYOND = 12.0, 0.05
+"""Strength of a joint that nobody doubts; what is beyond it counts little: it places a wide joint at its middle."""
 LEAST_NOISE = 0.02
 """Noise is taken to be this share of the clearest joint at least: drawn pictures have none."""
 
@@ -84,7 +91,7 @@ def trace_courses(photo: Photo, unit: Sequence[float]) -> Tracing:
     own = [_course(smooth, top, bottom, wide) * sign for top, bottom in pairwise(beds)]
     own = [profile / _noise(profile) for profile in own]
     for c, (score, shared) in enumerate(zip(own, _shared(own, wide), strict=True)):
-        said = score + SHARED * shared
+        said = score + SHARED * _unclear(score) * shared
         heads = _best(said, length, ends=True)
         top, bottom = beds[c], beds[c + 1]
         labels[top:bottom] = labels.max() + np.searchsorted(heads[1:-1], np.arange(columns), side="right") + 1
@@ -101,6 +108,11 @@ def _course(smooth: Array, top: int, bottom: int, wide: float) -> Array:
     """Return how much each column of a course looks like a head joint."""
     inset = min(int(0.15 * (bottom - top)) + round(wide), (bottom - top) // 3)
     return _strength(smooth[top + inset : bottom - inset].mean(axis=0), wide)
+
+
+def _unclear(score: Array) -> float:
+    """Return the share of their weight that the other courses have in a course: all where its own joints are faint."""
+    return float(np.clip(CLEAR / max(float(np.percentile(score, 98.0)), CLEAR), LEAST_SHARED, 1.0))
 
 
 def _shared(own: list[Array], wide: float) -> list[Array]:
@@ -175,18 +187,23 @@ def _best(score: Array, size: float, *, ends: bool) -> list[int]:
     n = len(score)
     share = SHORTEST if ends else 2.0 * SHORTEST
     low, high = max(2, int(share * size)), max(3, int(np.ceil(LONGEST * size)))
+    least_at_edge = max(2, int(SHORTEST_AT_EDGE * size)) if ends else low
     total, before = np.full(n + 1, -np.inf), np.zeros(n + 1, dtype=int)
     total[0] = 0.0
-    gain = np.append(np.clip(score, -2.0, 12.0), 0.0)
+    gain = np.append(np.clip(score, -2.0, FULL) + BEYOND * np.maximum(score - FULL, 0.0), 0.0)
     clear = max(float(np.percentile(gain[:-1], 99.0)), 1.0)
     odd = (np.log(np.arange(1, high + 1) / size) / np.log(2.0)) ** 2
     cost = np.minimum(ODD_UNIT * odd, DEAREST) * clear if ends else ODD_COURSE * odd * clear
-    for at in range(low, n + 1):
-        least = max(0, at - high)
-        own = cost[at - np.arange(least, at - low + 1) - 1]
+    for at in range(least_at_edge, n + 1):
+        if at < low and gain[at] < FULL:
+            continue
+        least, last = max(0, at - high), max(0, at - (least_at_edge if at == n else low))
+        starts = np.arange(least, last + 1)
+        own = cost[at - starts - 1]
         if ends and (least == 0 or at == n):  # a unit at an edge may be any part of one
-            own = np.where((np.arange(least, at - low + 1) == 0) | (at == n), AT_EDGE * own, own)
-        value = total[least : at - low + 1] - own
+            own = np.where((starts == 0) | (at == n), AT_EDGE * own, own)
+        short = (at - starts < low) & (starts > 0) & (gain[starts] < FULL)
+        value = np.where(short, -np.inf, total[least : last + 1] - own)
         k = int(np.argmax(value))
         total[at], before[at] = value[k] + gain[at], least + k
     found = [n]
