@@ -16,7 +16,10 @@ from concio.analysis.motion import step_pairs as pairs
 from concio.analysis.motion.scheme import Drive, Scheme
 from concio.analysis.motion.state import MotionState
 from concio.analysis.motion.stepper import Stepper
+from concio.contact.moving_solids import BESIDE
+from concio.contact.original_nodes import nodes_belong
 from concio.contact.reference import Reference
+from concio.contact.solid_search import SHIFT
 from concio.contact.solid_sides import FacetSides
 from motion_models import G
 from samples import sample
@@ -231,6 +234,26 @@ def test_wrong_nodes_of_a_contact_are_found_by_the_certificate(seed):
     stepper.certificate.original._named = None
     _, report = stepper.step(state, 1e-3, still)
     assert report.solution.residual > 1e-6
+
+
+@pytest.mark.parametrize(("share", "within"), [(0.0, True), (1.8, True), (2.2, False), (-2.2, False)])
+@pytest.mark.parametrize("scale", [1.0, 64.0])
+def test_nodes_belong_to_a_point_up_to_what_it_may_slide_before_they_are_sought_again(share, within, scale):
+    a, b = ((0, 0, 0), (0.5, 0.25, 0.25)), ((0.1, 0.05, 0.25), (0.4, 0.2, 0.5))
+    bodies = [box(name, *(tuple(scale * v for v in corner) for corner in at)) for name, at in (("a", a), ("b", b))]
+    floor = concio.Polyhedron.box("floor", (-scale,) * 3, (scale, scale, 0.0), kind="fixed")
+    stepper = Stepper(Reference.of(model_of(floor, *bodies, mesh=0.1 * scale), G), Scheme())
+    state = stepper.located(MotionState.at_rest(stepper.reference))
+    reference, slots = stepper.reference, stepper.maker.search.layout.slots
+    side, arm = slots.side_b, np.vstack([reference.node_arm, np.zeros((1, 3))])
+    mean = (side.weight[:, :, None] * arm[side.node]).sum(axis=1)
+    spacing = reference.solids.spacing[slots.body_b]
+    point = state.centre[slots.body_b] + mean
+    elastic = np.isfinite(spacing)
+    point[elastic] += share * (SHIFT + BESIDE) * spacing[elastic, None] * np.array([0.6, 0.8, 0.0])
+    belong = nodes_belong(reference, slots, point, np.zeros(len(slots)), state.centre, state.rotation)
+    assert elastic.sum() > 4
+    assert (belong[elastic] == within).all()
 
 
 @lru_cache
