@@ -271,7 +271,7 @@ def main() -> int:
         {p for place in ROOMS for p in ([SOURCE / place] if place.endswith(".py") else (SOURCE / place).rglob("*.py"))}
     )
     drawn = [] if chosen.named else [m for p in paths if chosen.only in p.as_posix() for m in mutants_of(p)]
-    every = drawn or named_mutants()
+    every = drawn or [m for m in named_mutants() if chosen.only in m.path]
     sample = every if chosen.named else random.Random(chosen.seed).sample(every, min(chosen.count, len(every)))
     kept = tomllib.loads(KEPT.read_text(encoding="utf-8")).get("kept", {}) if KEPT.exists() else {}
     print(f"{len(sample)} of {len(every)} mutants of {len(paths)} files, seed {chosen.seed}", flush=True)
