@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Any
+
 import numpy as np
 import pytest
 
 import concio
+from concio.analysis import inner_forces as inner
 from concio.analysis.inner_forces import inner_forces
 from concio.analysis.linearised_state import LinearisedState
 
@@ -58,3 +62,23 @@ def test_in_space_forces_move_inside_of_round_cones() -> None:
     assert problem.C_n.T @ moved[:, 0] + problem.C_t.T @ moved[:, 1:].ravel() == pytest.approx(-problem.f, abs=1e-12)
     assert (moved[:, 0] > 1e-5).all()
     assert (np.linalg.norm(moved[:, 1:], axis=1) < 0.5 * moved[:, 0]).all()
+
+
+def test_forces_that_a_programme_finds_balance_to_rounding(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A linear programme balances to its tolerance: what it leaves is taken off again."""
+    result = concio.solve(concio.wall(**WALL, horizontal=0.1))
+    problem, solution = result.assembly.problem(result.factors), result.solution
+    forces = np.column_stack([solution.normal_force, solution.friction_force])
+    rng, exact = np.random.default_rng(5), inner.optimise
+
+    def rough(*asked: Any, **options: Any) -> Any:
+        answer = exact(*asked, **options)
+        return replace(answer, x=answer.x + 1e-7 * rng.standard_normal(len(answer.x)))
+
+    monkeypatch.setattr(inner, "optimise", rough)
+    touches = np.abs(problem.gap + problem.C_n @ solution.displacement) < 1e-12
+    moved = inner_forces(problem, forces, touches, np.zeros((problem.pairs, 1)))
+    change = moved - forces
+    assert np.abs(change).max() > 1e-3 * np.abs(forces).max()
+    left = problem.C_n.T @ change[:, 0] + problem.C_t.T @ change[:, 1]
+    assert np.abs(left).max() < 1e-12 * np.abs(forces).max()

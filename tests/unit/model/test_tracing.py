@@ -216,3 +216,10 @@ def test_a_segmentation_of_ones_own_becomes_a_model() -> None:
     assert len(model.free_bodies) == 4
     assert sum(b.volume for b in model.free_bodies) == pytest.approx(0.6 * 0.4 * 0.4)
     assert concio.solve(model).solved
+
+
+def test_what_no_block_covers_in_a_segmentation_is_left_free() -> None:
+    labels = np.zeros((40, 60), dtype=int)
+    labels[10:30, :30], labels[10:30, 30:] = 1, 2
+    model = trace_labels(labels, Photo(np.zeros((40, 60)), 0.01)).model(thickness=0.4)
+    assert sum(b.volume for b in model.free_bodies) == pytest.approx(0.6 * 0.2 * 0.4)

@@ -6,6 +6,7 @@ import re
 from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -154,3 +155,19 @@ def test_the_rows_in_the_annex_are_those_of_the_book(monkeypatch: pytest.MonkeyP
     for row in rows:
         assert shown[row.name]["expected"] == pytest.approx(row.expected, rel=1e-9)
         assert shown[row.name]["computed"] == pytest.approx(row.computed, rel=1e-8)
+
+
+@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
+@pytest.mark.parametrize(("angle", "word"), [(0.0, "a_shifts"), (1e-8, "a_shifts"), (1e-5, "a_turns")])
+def test_a_block_turns_where_its_turn_moves_it_beside_its_shift_at_any_size_of_the_motion(unit, angle, word):
+    from concio.report.assessment_annex import _motion
+    from concio.report.assessment_texts import Texts
+
+    body = SimpleNamespace(vertices=np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]]))
+    block = SimpleNamespace(bodies=[0], centre=np.array([1.0, 0.5]))
+    motion = SimpleNamespace(
+        assembly=SimpleNamespace(model=SimpleNamespace(dim=2, bodies=[body])),
+        mechanics=SimpleNamespace(blocks=[block]), velocity=unit * np.array([1.0, 0.0, angle]),
+    )  # fmt: skip
+    texts = Texts("en")
+    assert _motion(texts, motion, 0).startswith(texts.words[word].split("{")[0])

@@ -57,6 +57,20 @@ def test_answers_that_are_kept_are_listed_the_newest_first(tmp_path: Path) -> No
     assert [one["key"][0] for one in results.known()] == ["b", "c", "a"]
 
 
+def test_a_door_opens_the_files_of_its_answer_and_no_others(tmp_path: Path) -> None:
+    results = Results(tmp_path)
+    for key in ("a" * 32, "b" * 32):
+        results.keep(key, {"key": key})
+        (tmp_path / key / f"{key[0]}.svg").write_text("<svg/>", encoding="utf-8")
+    (tmp_path / "secret.svg").write_text("<svg/>", encoding="utf-8")
+    word = results.door("a" * 32)
+    assert results.door("a" * 32) == word != results.door("b" * 32)
+    assert results.behind(word, "a.svg") == tmp_path / ("a" * 32) / "a.svg"
+    for name in ("b.svg", "../secret.svg", ".answer.json", "none.svg", ""):
+        assert results.behind(word, name) is None
+    assert results.behind("a" * 32, "a.svg") is None
+
+
 def test_numbers_of_a_summary_are_named_as_in_json() -> None:
     told = {"status": "solved", "bodies": 3, "ok": True, "certificate": {"worst": 1e-9, "deep": {"x": 1}},
             "verdict": {"exit_code": 0}, "seconds": {"total": 1.0}}  # fmt: skip

@@ -125,3 +125,12 @@ def test_solids_start_a_model_that_names_them(name: str) -> None:
     text = model_text(Path(name))
     assert text is not None
     assert tomllib.loads(text)["solids_file"] == name
+
+
+@pytest.mark.parametrize(
+    "stone", [[[0, 0], [1, 0]], [[0, 0], [1, 0], [1]], [[0, 0], [1, 0], ["1 m", 1]], [[0, 0], [1, 0], [True, 1]],
+              [[0, 0], [1, 0], (1, 1)], "a stone", None, [[0, 0], [1, 0], [1e9, 1]]]
+)  # fmt: skip
+def test_outlines_that_are_no_points_are_refused_in_words(stone: Any) -> None:
+    with pytest.raises(InputError, match="points are not pairs of numbers in metres"):
+        patch_of('name = "a wall"\n', {"do": "stones", "stones": [stone]})
