@@ -6,12 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import shapely
 
 import concio
 from concio.analysis.cells.half_spaces import HalfSpaces
 from concio.analysis.continuum.continuum import continuum_of
 from concio.analysis.continuum.elastic import solve_elastic
 from concio.analysis.continuum.kinematic_bound import kinematic_bound
+from concio.analysis.continuum.outline import mesh_lines
 from concio.analysis.continuum.static_bound import static_bound
 from samples import sample
 
@@ -245,3 +247,13 @@ def test_a_dead_load_that_is_not_carried_is_said():
 def test_sizes_that_mean_nothing_are_refused(sizes):
     with pytest.raises(concio.InputError, match="whole numbers"):
         concio.halve_blocks(pushed, sizes=sizes)
+
+
+@pytest.mark.parametrize("near", [1e-6, 1e-3, 0.5])
+def test_a_mesh_has_lines_through_corners_and_through_points_that_are_not_near_another_line(near):
+    size = 100.0 * near
+    shape = shapely.box(0.0, 0.0, size, 2.0 * size)
+    points = np.array([[0.3, 0.5], [0.35, 0.7], [0.95, 3.0]]) * size
+    columns, rows = mesh_lines(shape, points, near)
+    assert columns == pytest.approx(size * np.array([0.0, 0.3, 1.0]))
+    assert rows == pytest.approx(size * np.array([0.0, 0.5, 0.7, 2.0]))

@@ -212,3 +212,10 @@ def test_both_views_say_how_many_steps_they_leave_out() -> None:
         page = report_html(concio.solve(model), figures=False)
         assert page.count("if (data.left_out) complain(") == 1
         assert '"left_out":0' in page
+
+
+def test_forces_of_joints_act_where_they_are_in_the_view_too() -> None:
+    result = concio.solve(tower())
+    data = space_view_data([result], ["one"])
+    at = unpack(data["steps"][0]["at"]).reshape(-1, 3) + np.array(data["origin"])
+    assert at == pytest.approx(result.joints_in_space.point, abs=1e-6)
