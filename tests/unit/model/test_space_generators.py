@@ -14,6 +14,7 @@ import concio
 from commands import run
 from concio import GeometryError, InputError, Model
 from concio.contact.assembly import Assembly
+from concio.model.generate import plan_walls
 from concio.model.generate.bonds import SHORTEST
 
 RIGID = {"block": "rigid", "unit_weight": 1.0}
@@ -358,3 +359,14 @@ def test_a_new_file_of_each_is_read_and_checked(kind: str, tmp_path: Path) -> No
     assert again.loads == model.loads
     assert again.supports == model.supports
     assert files("concio.model").joinpath("templates", f"{kind}.toml").is_file()
+
+
+@pytest.mark.parametrize("length", [0.25, 1.0, 8.0])
+def test_courses_begin_with_whole_blocks_on_the_ground_and_lap_the_one_below(length: float) -> None:
+    """Ends of a course are no joints to lap: a wall of 5 1/4 blocks begins with whole ones."""
+    bricks = plan_walls._Bricks(length, 0.5 * length, 0.25 * length, 1, "running", 0)
+    ends = length * np.array([0.0, 5.25])
+    first = plan_walls._set_out(*ends, bricks, *bricks.unit(0), ends)
+    assert first == pytest.approx(length * np.array([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 5.25]))
+    second = plan_walls._set_out(*ends, bricks, *bricks.unit(1), first)
+    assert second == pytest.approx(length * np.array([0.0, 0.5, 1.5, 2.5, 3.5, 4.5, 5.25]))
