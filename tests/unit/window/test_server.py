@@ -377,6 +377,7 @@ def test_a_dragged_load_is_shown_with_certified_bounds(client: Client) -> None:
     text = client.call("state")["document"]["text"]
     for y in (2.0, 1.75, 1.5):
         found = client.call("drag", table=0, at=[0.0, y], body="b04")["done"]
+        assert 0.0 < found["seconds"] < 120.0
         moved = concio.loads(text.replace("[0.0, 2.0]", f"[0.0, {y}]"))
         bound = concio.limit(moved, "push", path=False, search=False, steps=False).associated.multiplier
         assert found["multiplier"] == pytest.approx(bound, rel=1e-9)
