@@ -11,7 +11,7 @@ import subprocess
 import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +26,10 @@ def chromium() -> str | None:
     """Return the program: that of the variable CHROMIUM, or one that is installed."""
     given = os.environ.get("CHROMIUM")
     return given or next((found for name in NAMES if (found := shutil.which(name))), None)
+
+
+class Left(AssertionError):
+    """The page was left for another before it answered."""
 
 
 class Browser:
@@ -84,6 +88,8 @@ class Browser:
         while True:
             found = self._next(LATE)
             if found.get("id") == number:
+                if "navigated" in found.get("error", {}).get("message", ""):
+                    raise Left(found["error"]["message"])
                 assert "error" not in found, f"{method}: {found['error']}"
                 return found["result"]
 
@@ -115,9 +121,9 @@ class Browser:
         """Wait until an expression of the page is true."""
         end = time.monotonic() + LATE
         while time.monotonic() < end:
-            value = self.js(f"(() => {{ try {{ return Boolean({code}); }} catch {{ return false; }} }})()")
-            if value:
-                return
+            with suppress(Left):
+                if self.js(f"(() => {{ try {{ return Boolean({code}); }} catch {{ return false; }} }})()"):
+                    return
             time.sleep(pause)
         msg = f"{why or code} did not happen; the page says: {self.js('document.body.innerText')[:1500]}"
         raise AssertionError(msg)

@@ -26,6 +26,7 @@ from matplotlib.image import imsave
 
 import concio
 from browser import Browser, browser
+from concio.post.force_lines import force_chains
 from ifc_files import IfcText
 from rendered import rendered
 from windows import LATE, Client, window
@@ -174,6 +175,10 @@ def test_from_a_drawing_to_a_limit_load(page: Browser, tmp_path: Path) -> None:
         page.until(
             f"{SETTLED} && window.concio.view.shown && window.concio.view.shown.loads.length === 3", "the facade"
         )
+        chosen = {"FONDAZIONE": "fixed", "SOLAIO": "load", "COPERTURA": "load", "ASSI": "ignore", "QUOTE": "ignore"}
+        for layer, meaning in chosen.items():
+            page.until(f"document.querySelector(\"select[aria-label$='{layer}']\")?.value === '{meaning}'", layer)
+        assert "ASSI" in text_of(client)
         begun = "(document.querySelector('#begun')?.textContent || '')"
         assert all(one in page.js(begun) for one in ("thickness 1.0", "unit_weight 20 kN/m3", "friction 0.6"))
         page.click("#tab-data")
@@ -634,6 +639,23 @@ def test_two_answers_stand_beside_each_other_and_a_mechanism_moves(page: Browser
     result = concio.solve(concio.loads(text_of(client)))
     assert f"{result.joints.N[0]:.5g}"[:5] in joint
     assert page.js(AUDIT) == []
+    page.click("#tab-look")
+    page.until("document.querySelector('#forces')")
+    page.click("#forces")
+    drawn = page.js("document.querySelectorAll('#picture .film .force').length")
+    assert drawn == len(force_chains(result).force) > 0
+    outlines = "[...document.querySelectorAll('#picture {} .body')].map((e) => e.getAttribute('d'))"
+    drawn, described = (page.js(outlines.format(group)) for group in (".film:not(.ghosted)", ".faint"))
+    assert len(drawn) == 5
+    for moved, rest in zip(drawn, described, strict=True):
+        assert box_of(moved) == pytest.approx(box_of(rest), abs=1e-6)
+    assert page.js(AUDIT) == []
+
+
+def box_of(path: str) -> list[float]:
+    """Return smallest and largest x and y of an outline of the picture."""
+    found = [float(word) for word in re.findall(r"-?[0-9.]+(?:e-?[0-9]+)?", path)]
+    return [min(found[::2]), min(found[1::2]), max(found[::2]), max(found[1::2])]
 
 
 EXAMPLES = (
@@ -680,7 +702,11 @@ def test_a_picture_becomes_blocks_that_are_corrected_and_asked(page: Browser, tm
         page.go(client.server.address)
         page.until("document.querySelector('#start').open")
         page.js("[...document.querySelectorAll('#start button')].find((b) => b.textContent === 'wall.png').click()")
-        page.until("document.querySelector('[data-photo=flat]') && document.querySelector('#picture image')")
+        flat = "document.querySelector('[data-photo=flat]') && document.querySelector('#picture image')"
+        page.until(flat)
+        page.go("about:blank")
+        page.go(client.server.address)
+        page.until(flat, "a picture without blocks opens with its own tab")
 
         def corner(x: float, y: float) -> None:
             at = page.js("(() => { const r = document.querySelector('#picture image').getBoundingClientRect(); "

@@ -14,6 +14,7 @@ import numpy as np
 
 from concio.plot import style
 from concio.post.body_motion import body_motions
+from concio.post.force_lines import force_chains
 from concio.post.joint_lines import joint_lines
 from concio.post.mechanism_states import mechanism_states
 from concio.post.outlines import Outlines, display_scale, outlines
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
 
 Array = np.ndarray
 
+MOST_CHAINED = 3000
+"""Lines of force are found for so many joints of all steps; of more they would take as long as the answer."""
 BUDGET = 40_000_000
 """Bytes of arrays above which steps of a load path are left out of the view, evenly."""
 
@@ -78,7 +81,8 @@ def view_data(results: Sequence[Result], labels: Sequence[str]) -> dict[str, Any
     pairs = first.assembly.pairs
     each = 8 * len(shown.points) + (32 + 4 + 1 + 32) * len(pieces.pair)
     steps = steps_within(BUDGET, len(results), each)
-    packed = [_step(results[k], labels[k]) for k in steps]
+    few = len(steps) * len(first.joints.N) <= MOST_CHAINED
+    packed = [_step(results[k], labels[k]) | (_chains(results[k], origin) if few else {}) for k in steps]
     largest = max(step.pop("largest") for step in packed)
     interfaces = first.joints
     return {
@@ -145,6 +149,14 @@ def steps_within(budget: int, count: int, each: int) -> list[int]:
     """Return which of ``count`` steps of ``each`` bytes fit a budget: the first, the last, and evenly between."""
     room = int(max(2, min(count, budget // max(each, 1))))
     return sorted({round(k) for k in np.linspace(0, count - 1, room)})
+
+
+def _chains(result: Result, origin: Array) -> dict[str, Any]:
+    """Return the lines along which forces run through the blocks, where there is an answer."""
+    if not result.solved:
+        return {}
+    found = force_chains(result)
+    return {"chain": pack(found.lines - origin, "f4"), "carried": pack(found.force, "f4")}
 
 
 def _step(result: Result, label: str) -> dict[str, Any]:

@@ -348,6 +348,7 @@ LOOK = {
     "block": style.BLOCK, "mortar": style.FILM, "rigid": style.RIGID, "fixed": style.OBSTACLE, "hatch": style.HATCH,
     "edge": style.EDGE, "load": style.LOAD.colour, "tie": style.TENSION.colour, "ink": style.INK,
     "stick": style.STICK.colour, "slip": style.SLIP.colour, "open": style.OPEN.colour,
+    "press": style.COMPRESSION.colour,
 }  # fmt: skip
 """Colours of the page, those of figures and reports."""
 

@@ -38,6 +38,21 @@ def test_the_motions_of_a_limit_load_are_those_of_its_figures(pillar: concio.Mod
     assert shown["bodies"]["name"] == [b.name for b in pillar.bodies]
 
 
+def test_lines_of_force_carry_what_stands_above_every_cut(pillar: concio.Model, tmp_path: Path) -> None:
+    place = tmp_path / ("2" * 32)
+    place.mkdir()
+    write_report(concio.solve(pillar), place / "report.html")
+    data = Results(tmp_path).film(place.name)
+    (step,) = data["steps"]
+    lines = unpack(step["chain"]).reshape(-1, 2, 2) + np.array(data["origin"])
+    force = unpack(step["carried"])
+    for y, weight in ((0.02, 20.0), (1.02, 10.0)):  # 0.5 x 1.0 m of 20 kN/m3 each, pushed by 1 kN at the top
+        cut = (lines[:, :, 1].min(1) < y) & (lines[:, :, 1].max(1) > y)
+        way = lines[cut, 1] - lines[cut, 0]
+        way *= np.sign(way[:, 1:]) / np.hypot(*way.T)[:, None]
+        assert force[cut] @ way == pytest.approx([-1.0, weight], abs=1e-4)
+
+
 def test_a_report_gives_its_own_data_and_other_files_none(pillar: concio.Model, tmp_path: Path) -> None:
     place = tmp_path / ("1" * 32)
     place.mkdir()

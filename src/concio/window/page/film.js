@@ -37,14 +37,26 @@ export function ringsOf(film, k, scale) {
   return found;
 }
 
+/* whether a step has lines of force: they run through the model as it is described */
+export const hasForces = (film, k) => Boolean(film && !film.frames && !film.space && film.step(k).chain?.length);
+
+function drawForces(g, film, k) {
+  const { chain, carried } = film.step(k), [x0, y0] = film.origin, most = carried.reduce((a, b) => Math.max(a, Math.abs(b)), 0);
+  for (let i = 0; i < carried.length; i++) {
+    const share = Math.abs(carried[i]) / most;
+    node("line", { class: carried[i] < 0 ? "force pull" : "force", x1: x0 + chain[4 * i], y1: -y0 - chain[4 * i + 1], x2: x0 + chain[4 * i + 2], y2: -y0 - chain[4 * i + 3], "stroke-width": 0.6 + 6 * share }, g);
+  }
+}
+
 /* the model as it moves, into an SVG; ghost: outlines alone, for a second answer above the first */
-export function drawFilm(into, film, k, scale, ghost = false) {
+export function drawFilm(into, film, k, scale, ghost = false, forces = false) {
   const g = node("g", { class: ghost ? "film ghosted" : "film", "pointer-events": "none" }, into);
   ringsOf(film, k, scale).forEach((rings, b) => {
     const kind = kindOf({ kind: film.kinds[b], role: film.kinds[b] });
     node("path", { class: `body ${kind}${!ghost && view.selected.bodies.has(b) ? " on" : ""}`, d: rings.map(d).join(""), "fill-rule": "evenodd" }, g);
   });
   const step = film.frames ? null : film.step(k);
+  if (forces && hasForces(film, k)) return drawForces(g, film, k);
   if (ghost || !step?.state || film.space) return;
   const { ends } = film.pieces, [x0, y0] = film.origin;
   for (let i = 0; i < step.state.length; i++) {

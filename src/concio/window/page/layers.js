@@ -27,10 +27,16 @@ function thumbnail(lines, box) {
   return svg;
 }
 
+let newest = 0;
 export async function layersPane(pane) {
+  const mine = (newest += 1);
   let found;
-  try { const answered = await call("layers"); if (answered.error) throw Object.assign(new Error(answered.error.what), {}); found = answered.done; }
-  catch (error) { return pane.replaceChildren(el("p", { role: "alert" }, error.text || error.message)); }
+  try {
+    let answered;
+    do answered = await call("layers"); while (answered.state === "cancelled" && mine === newest); /* another picture was asked for meanwhile */
+    if (mine !== newest) return;
+    if (answered.error) throw Object.assign(new Error(answered.error.what), {}); found = answered.done;
+  } catch (error) { return pane.replaceChildren(el("p", { role: "alert" }, error.text || error.message)); }
   if (!found) return;
   lines = found.layers.flatMap((l) => l.lines);
   if (alone().length) fit();

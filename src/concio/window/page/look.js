@@ -2,12 +2,12 @@
 import { t, el, field, digits, language } from "./words.js";
 import { call } from "./net.js";
 import { boxAround, canvas, draw, inSpace, view } from "./picture.js";
-import { drawFilm, filmOf, numbersOf, ringsOf } from "./film.js";
+import { drawFilm, filmOf, hasForces, numbersOf, ringsOf } from "./film.js";
 import { pose } from "./space.js";
 import { answerBox, askedOf } from "./ask.js";
 
 let known = [], first = "", second = "", doc = () => null, films = new Map(), told = new Map(), numbers = null, numbered = "", changed = () => {};
-let step = 0, size = 50, over = false, playing = 0, phase = 1;
+let step = 0, size = 50, over = false, forces = false, playing = 0, phase = 1;
 export function setLook(document_, tables) { doc = document_; changed = tables; }
 
 async function filmFor(key) {
@@ -69,15 +69,18 @@ function controls(film, other) {
   play.addEventListener("click", () => { if (playing) { stop(); phase = 1; render(film, other); } else start(film, other, () => { slider.value = step; shown(); }); });
   const above = el("input", { type: "checkbox", checked: over });
   above.addEventListener("change", () => { over = above.checked; render(film, other); });
+  const lines = el("input", { type: "checkbox", checked: forces, id: "forces" });
+  lines.addEventListener("change", () => { forces = lines.checked; if (forces) stop(); render(film, other); });
   shown();
   return el("div", {},
     el("div", { class: "row" }, play, ...(film.count > 1 ? [el("label", {}, `${t("step")} `), slider] : []), word),
     film.frames ? "" : el("div", { class: "row" }, el("span", {}, t("enlarged")), scale),
+    Array.from({ length: film.count }, (_, k) => k).some((k) => hasForces(film, k)) ? el("label", { class: "row" }, lines, t("forces")) : "",
     other && !inSpace() ? el("label", { class: "row" }, above, t("overlaid")) : "",
     el("div", { class: "row" }, el("button", { id: "film-off", onclick: () => { stop(); rest(); } }, t("model_alone"))));
 }
 
-const scaleOf = (film) => (film.frames ? 1 : film.scale * (size / 50) ** 2 * phase);
+const scaleOf = (film) => (film.frames ? 1 : forces && hasForces(film, Math.min(step, film.count - 1)) ? 0 : film.scale * (size / 50) ** 2 * phase);
 
 /* into the main picture, and into the small ones where two answers are compared */
 function render(film, other) {
@@ -90,7 +93,7 @@ function render(film, other) {
     pose(fits(film) && film.kinds.length === view.shown.bodies.length ? film.step(at(film)).motion : null, film ? scaleOf(film) : 1);
     return draw();
   }
-  view.moved = fits(film) ? (into) => { drawFilm(into, film, at(film), scaleOf(film)); if (over && fits(other)) drawFilm(into, other, at(other), scaleOf(other), true); } : null;
+  view.moved = fits(film) ? (into) => { drawFilm(into, film, at(film), scaleOf(film), false, forces); if (over && fits(other)) drawFilm(into, other, at(other), scaleOf(other), true); } : null;
   draw();
   if (other) [film, other].forEach((f, k) => { const place = document.getElementById(`small-${k}`); if (place && fits(f)) place.replaceChildren(small(f, at(f), [film, other])); });
 }
@@ -106,7 +109,7 @@ function small(film, k, both) {
   const points = both.flatMap((f) => (f ? ringsOf(f, Math.min(step, f.count - 1), scaleOf(f)).flat(2) : [])), [x0, y0, x1, y1] = boxAround(points.concat(view.shown.bodies.flatMap((b) => b.rings.flat())));
   const made = document.createElementNS("http://www.w3.org/2000/svg", "svg");
   made.setAttribute("viewBox", `${x0} ${-y1} ${x1 - x0} ${y1 - y0}`); made.setAttribute("role", "img"); made.setAttribute("aria-label", film.words[k] || t("picture"));
-  drawFilm(made, film, k, scaleOf(film));
+  drawFilm(made, film, k, scaleOf(film), false, forces);
   return made;
 }
 

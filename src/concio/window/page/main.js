@@ -91,7 +91,7 @@ async function picture() {
       if (!doc || found.hash + doc.name !== asked) continue;
       if (found.state === "early") { show(found.early); attention(); }
       else if (found.state === "done") { pictured = asked; show(found.done); fault(null); }
-      else if (found.state === "error") { pictured = asked; if ((hasPicture() || tabNames().includes("layers")) && !view.shown) { show(NOTHING); if (!hasPicture()) go("layers"); } fault(found.error); }
+      else if (found.state === "error") { pictured = asked; if ((hasPicture() || tabNames().includes("layers")) && !view.shown) { show(NOTHING); go(hasPicture() ? "photo" : "layers"); } fault(found.error); }
       else if (found.state === "cancelled") await new Promise((then) => setTimeout(then, 100));
       if (pictured === asked) { attention(); refresh(["ask", "build", "tables", "layers", "photo"]); tabs(); underlay(() => refresh(["photo"], true)); }
     }

@@ -111,7 +111,7 @@ export function photoPane(pane) {
       el("div", { class: "row" }, el("button", { class: "main", id: "trace", disabled: busy, onclick: () => trace(form.method) }, t("photo_find")), tool("outline", "photo_outline"),
         el("button", { id: "take-stones", disabled: !found, onclick: async () => { if (await send([{ do: "stones", stones: found.stones }])) { found = null; stones = []; photoPane(pane); draw(); } } }, t("photo_take"))));
     if (form.wrong) parts.push(el("p", { role: "alert" }, el("span", { lang: "en" }, form.wrong)));
-    if (found) parts.push(el("p", { role: "status" }, t("photo_found", { count: found.stones.length, width: found.width ? digits(1000 * found.width) : "–" })), doubts());
+    if (found) parts.push(el("p", { role: "status" }, t("photo_found", { count: found.stones.length, width: found.width ? digits(Math.round(1000 * found.width)) : "–" })), doubts());
     parts.push(el("h2", {}, t("photo_correct")), el("div", { class: "row" }, tool("cut", "photo_cut"), tool("corner", "photo_corner"),
       el("button", { id: "merge", onclick: () => send([{ do: "merge", names: [...view.selected.bodies].map((k) => view.shown.bodies[k].name) }]) }, t("photo_merge"))), el("p", { class: "quiet" }, t("photo_help")));
   }
