@@ -175,6 +175,18 @@ def test_from_a_drawing_to_a_limit_load(page: Browser, tmp_path: Path) -> None:
         page.until(
             f"{SETTLED} && window.concio.view.shown && window.concio.view.shown.loads.length === 3", "the facade"
         )
+        field = "document.querySelector(\"input[aria-label$='SOLAIO']\")"
+        page.js(f"({field}.focus(), {field}.select())")
+        page.type("0, -2")
+        client.page = page.js("sessionStorage.getItem('page')")
+        assert "error" not in client.do({"do": "set", "path": ["title"], "value": "another"})
+        page.until(f"{SETTLED} && /another/.test(window.concio.state().document.text)")
+        time.sleep(1.0)  # the table of the layers is filled again
+        page.type("4")
+        page.press("Tab")
+        page.until("/SOLAIO = .*-24/.test(window.concio.state().document.text)")
+        assert "value = [0, -2]" not in text_of(client)
+        page.until(SETTLED)
         chosen = {"FONDAZIONE": "fixed", "SOLAIO": "load", "COPERTURA": "load", "ASSI": "ignore", "QUOTE": "ignore"}
         for layer, meaning in chosen.items():
             page.until(f"document.querySelector(\"select[aria-label$='{layer}']\")?.value === '{meaning}'", layer)
