@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from concio.errors import GeometryError, InputError
-from concio.fem.mapped_mesh import _paired
+from concio.fem.mapped_mesh import _monotone, _paired
 from concio.fem.polygon_mesh import mesh_polygon, mesh_quality
 from concio.fem.triangulate import _worst_around
 from concio.kinematics.mass import signed_area
@@ -172,3 +172,12 @@ def test_breaks_that_all_but_coincide_are_one_node_of_a_slender_body(turn: int) 
     points, cells = mesh_polygon(strip, 0.5, breaks)
     assert_good_mesh(strip, points, cells)
     assert min(np.hypot(*np.diff(points[np.append(cell, cell[0])], axis=0).T).min() for cell in cells) > 1e-3
+
+
+def test_partners_that_would_cross_a_mark_are_spread_between_their_neighbours():
+    """Marks at 0.5 and 0.8 stay where they are; of the two partners between them one lay beyond."""
+    pairs = [(0.0, 0.0), (0.5, 0.1), (0.9, 0.2), (0.7, 0.3), (0.8, 0.4), (1.0, 1.0)]
+    found = _monotone(pairs, np.array([0.5, 0.8]), np.array([0.1, 0.2, 0.3, 0.4]))
+    assert np.array(found) == pytest.approx(
+        np.array([(0.0, 0.0), (0.5, 0.1), (0.6, 0.2), (0.7, 0.3), (0.8, 0.4), (1.0, 1.0)])
+    )

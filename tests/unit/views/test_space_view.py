@@ -20,7 +20,7 @@ from concio.post.solids import model_solids, moved_ties, solids
 from concio.problem.solution import Mechanism, Status, failed
 from concio.report.page import report_html
 from concio.report.space_data import space_view_data
-from concio.report.view_data import unpack
+from concio.report.view_data import steps_within, unpack
 from solids import box, frame_block, l_block, turned
 
 
@@ -219,3 +219,16 @@ def test_forces_of_joints_act_where_they_are_in_the_view_too() -> None:
     data = space_view_data([result], ["one"])
     at = unpack(data["steps"][0]["at"]).reshape(-1, 3) + np.array(data["origin"])
     assert at == pytest.approx(result.joints_in_space.point, abs=1e-6)
+
+
+@pytest.mark.parametrize(("budget", "count", "each", "kept"), [
+    (100, 50, 10, 10), (100, 5, 10, 5), (100, 50, 1000, 2), (100, 3, 0, 3), (0, 50, 10, 2)])  # fmt: skip
+def test_steps_of_a_view_fit_into_a_budget_with_the_first_and_the_last(
+    budget: int, count: int, each: int, kept: int
+) -> None:
+    found = steps_within(budget, count, each)
+    assert len(found) == kept
+    assert (found[0], found[-1]) == (0, count - 1)
+    gaps = np.diff(found)
+    assert gaps.min() > 0
+    assert gaps.max() - gaps.min() <= 1
