@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from concio.plot.figure_language import in_language
 from concio.verdict.italian import Catalogue, catalogue
+from concio.verdict.italian_numbers import QUOTED, commas
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,10 +28,6 @@ TAG = re.compile(r"(<(?:script|style)\b.*?</(?:script|style)>|<[^>]*>)", re.DOTA
 """Tags; scripts and styles whole."""
 KEPT = re.compile(r"<(\w+)\b[^>]*\btranslate=no\b")
 ATTRIBUTE = re.compile(r'\b(alt|aria-label)="([^"]*)"')
-QUOTED = re.compile(r"((?<!\w)'[^']*'(?!\w))")
-"""Names in sentences; an Italian apostrophe follows a letter."""
-DECIMAL = re.compile(r"(?<![\w.,])(?<!concio )(\d{1,3}(?:,\d{3})+|\d+)(\.\d+)?(?=e[+-]?\d|(?!\w|\.\d))")
-POINT = re.compile(r"\((-?[\d.e+-]+(?:, -?[\d.e+-]+)+)\)")
 UNITS = frozenset({
     "µm", "kN", "N", "MN", "kgf", "tf", "m", "cm", "mm", "ft", "in", "MPa", "GPa", "kPa", "Pa", "bar", "g", "s", "rad",
     "mrad", "x", "y", "z", "m2", "m3", "mm2", "mm3", "cm2", "deg", "E", "nu", "concio",
@@ -159,14 +156,3 @@ def _neutral(text: str) -> bool:
     if all(word in UNITS for word in re.findall(r"[^\W\d_][\w]*", re.sub(r"(?<=\d)e[+-]?\d+", "", bare))):
         return True
     return all(GIVEN.fullmatch(part) for part in text.split(", "))
-
-
-def commas(text: str) -> str:
-    """Return a text with its numbers as Italian writes them, names in quotes as they are."""
-    parts = QUOTED.split(text)
-    return "".join(part if part.startswith("'") and k % 2 else _commas(part) for k, part in enumerate(parts))
-
-
-def _commas(text: str) -> str:
-    text = POINT.sub(lambda match: f"({match[1].replace(', ', '; ')})", text)
-    return DECIMAL.sub(lambda match: match[1].replace(",", "\u2009") + (match[2] or "").replace(".", ","), text)

@@ -15,6 +15,8 @@ from functools import cache
 from importlib.resources import files
 from typing import Literal
 
+from concio.verdict.italian_numbers import commas
+
 GAP = re.compile(r"\{(\w+)(?:!(\w))?\}")
 """{name} stands for anything, {name!l} for a list, {name!s} for a sentence, {name!p} for sentences with semicolons,
 {name!n} for a number with its unit, {name!w} for one word, {name!a} for an axis."""
@@ -146,8 +148,8 @@ def italian(text: str) -> tuple[Piece, ...]:
 
 
 def in_italian(text: str) -> list[list[str]]:
-    """Return a text of a verdict in Italian as pairs of text and language, as :func:`italian` gives them."""
-    return [[piece.text, piece.language] for piece in italian(text)]
+    """Return a text of a verdict in Italian as pairs of text and language, numbers with decimal commas."""
+    return [[commas(p.text) if p.language == "it" else p.text, p.language] for p in italian(text)]
 
 
 @cache

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 import concio
 from concio.problem.solution import Status
 from concio.verdict import dynamics_verdict, path_verdict, push_verdict
-from concio.verdict.italian import GAP, NUMBER, italian
+from concio.verdict.italian import GAP, NUMBER, in_italian, italian
 from concio.verdict.step_words import WORDS
 
 TABLE = tomllib.loads((Path(concio.__file__).parent / "verdict" / "italian.toml").read_text(encoding="utf-8"))
@@ -78,3 +78,15 @@ def test_verdicts_that_were_reached_are_said_in_italian_with_their_numbers() -> 
 def test_a_sentence_is_not_translated_where_a_gap_would_reach_over_its_end() -> None:
     text = "The strength is lost. Nothing more is known at 3 mm."
     assert [piece.language for piece in italian(text)] == ["en"]
+
+
+def test_sentences_of_the_window_have_decimal_commas_where_they_are_known() -> None:
+    assert in_italian("The loads are carried. Nobody knows 0.5 of this.") == [
+        ["La struttura sostiene i carichi.", "it"], ["Nobody knows 0.5 of this.", "en"]]  # fmt: skip
+    seen = 0
+    for english, said in WHOLE:
+        pieces = in_italian(GAP.sub("12.5 m", english))
+        if english.endswith(".") and GAP.search(english) and [language for _, language in pieces] == ["it"]:
+            seen += 1
+            assert pieces[0][0] == GAP.sub("12,5 m", said).replace("'12,5 m'", "'12.5 m'")
+    assert seen > 50

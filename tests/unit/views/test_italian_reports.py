@@ -17,7 +17,7 @@ import concio
 from commands import run
 from concio.motion import Pulse
 from concio.plot.figures import suitable_figures
-from concio.report.italian_page import commas, figure_in, in_italian, plain_italian, report_catalogue
+from concio.report.italian_page import figure_in, in_italian, plain_italian, report_catalogue
 from concio.report.limit_page import limit_html
 from concio.report.motion_page import motion_html
 from concio.report.page import report_html
@@ -25,6 +25,7 @@ from concio.report.path_page import path_html
 from concio.report.study_page import study_html
 from concio.studies.variables import variable
 from concio.verdict.italian import GAP, NUMBER
+from concio.verdict.italian_numbers import commas
 
 TABLE = tomllib.loads((files("concio.report") / "italian.toml").read_text(encoding="utf-8"))
 ENGLISH = re.compile(
