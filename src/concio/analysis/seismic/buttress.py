@@ -16,6 +16,9 @@ from concio.model.polyhedron import Polyhedron
 
 Array = np.ndarray
 
+BUTTRESS = "buttress"
+"""Name, material and role of the body that is added."""
+
 SIDES: Mapping[str, tuple[int, float]] = {
     "left": (0, -1.0), "right": (0, 1.0), "-x": (0, -1.0), "+x": (0, 1.0), "-y": (1, -1.0), "+y": (1, 1.0),
 }  # fmt: skip
@@ -79,13 +82,12 @@ def with_buttress(
         where = ", ".join(f"{k} = {a:.4g} to {b:.4g} m" for k, a, b in zip("xy", low[:-1], high[:-1], strict=False))
         msg = f"a buttress of {width:.4g} m has no ground under it, from {where} at z = {low[-1]:.4g} m"
         raise InputError(msg, where="strengthening", hint="make the fixed body wider, or the largest amount smaller")
-    kept = {"kind": "rigid", "material": "buttress", "role": "buttress"}
     body: Body | Polyhedron
     if model.dim == 3:
-        body = Polyhedron.box("buttress", low.tolist(), high.tolist(), **kept)
+        body = Polyhedron.box(BUTTRESS, low.tolist(), high.tolist(), kind="rigid", material=BUTTRESS, role=BUTTRESS)
     else:
         outline = np.array([low, [high[0], low[1]], high, [low[0], high[1]]])
         thick = max(model.outlines[i].thickness for i in bodies)
-        body = Body("buttress", outline, thickness=thick, **kept)  # type: ignore[arg-type]
-    materials = {**model.materials, "buttress": Rigid(unit_weight=unit_weight)}
+        body = Body(BUTTRESS, outline, thickness=thick, kind="rigid", material=BUTTRESS, role=BUTTRESS)
+    materials = {**model.materials, BUTTRESS: Rigid(unit_weight=unit_weight)}
     return replace(model, bodies=(*model.bodies, body), materials=materials)
