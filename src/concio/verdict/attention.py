@@ -19,7 +19,7 @@ from concio.model.model import Model
 from concio.model.plausibility import implausible
 from concio.verdict.connection import apart
 from concio.verdict.lost_loads import lost_loads
-from concio.verdict.weights import odd_weights
+from concio.verdict.odd_weights import odd_weights
 
 MOST_PLACES = 3
 """More joints that were not made than this are counted in a sentence; 'concio check' names every one."""

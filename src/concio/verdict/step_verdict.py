@@ -15,12 +15,12 @@ from concio.problem.tolerances import CERTIFIED
 from concio.solvers.statics.self_stress import SelfStress, least_compression, least_compression_of
 from concio.verdict.attention import attention, joints_not_made, torsion
 from concio.verdict.crushing import crushing
+from concio.verdict.odd_weights import odd_weights
 from concio.verdict.part_words import parts_told, regularised
 from concio.verdict.question import Question, question_of
 from concio.verdict.step_words import OUTCOMES, WORDS
 from concio.verdict.unseen import unseen
 from concio.verdict.verdict import Outcome, Verdict
-from concio.verdict.weights import odd_weights
 
 if TYPE_CHECKING:
     from concio.analysis.result import Result

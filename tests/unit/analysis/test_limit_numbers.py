@@ -12,7 +12,7 @@ from concio.analysis import limit_ties
 from concio.analysis.limit_torsion import SpreadSteps
 from concio.problem.solution import Status
 from concio.verdict.limit_words import margin_line, one_step_lines
-from concio.verdict.weights import _first, _has
+from concio.verdict.odd_weights import _first, _has
 
 
 @pytest.mark.parametrize("whole", [1e9, 0.0])

@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 
 import concio
 from concio.analysis.motion.dynamics_result import Ending
-from concio.analysis.motion.ground import Ground
+from concio.analysis.motion.ground_motion import Ground
 from models import box, model_of, weight
 from motion_models import G
 from space_motions import blocks

@@ -9,7 +9,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 import concio
-from concio.analysis.motion.ground import Ground
+from concio.analysis.motion.ground_motion import Ground
 from concio.analysis.motion.scheme import Drive
 from motion_models import G, standing
 from space_motions import blocks, extruded, stepper_of

@@ -16,9 +16,9 @@ from concio.analysis.cracks.cause import Cause
 from concio.analysis.cracks.forward import Forward
 from concio.analysis.cracks.measurement import Candidate
 from concio.analysis.cracks.moved import cause_model
-from concio.analysis.motion.moved_supports import begun
 from concio.analysis.motion.near_origin import Near
 from concio.analysis.motion.scheme import Scheme
+from concio.analysis.motion.start_on_moved_supports import begun
 from concio.analysis.motion.state import MotionState
 from concio.analysis.motion.statics import Statics
 from concio.contact.reference import Reference

@@ -12,15 +12,15 @@ import numpy as np
 from concio.analysis.entry_point import entry_point
 from concio.analysis.motion.dynamics_asked import check_base, check_length, check_masses, positive, step_asked, thrown
 from concio.analysis.motion.dynamics_result import DynamicsResult, Ending
-from concio.analysis.motion.ground import Ground, Motion
+from concio.analysis.motion.ground_motion import Ground, Motion
 from concio.analysis.motion.history import Recorder
 from concio.analysis.motion.interruption import Interruption
-from concio.analysis.motion.moved_supports import first_state
 from concio.analysis.motion.mover import Mover, Row, shifted
 from concio.analysis.motion.near_origin import Near
 from concio.analysis.motion.observer import Observer
 from concio.analysis.motion.pace import Pace
 from concio.analysis.motion.scheme import Drive, Scheme
+from concio.analysis.motion.start_on_moved_supports import first_state
 from concio.analysis.motion.state import MotionState
 from concio.analysis.motion.step_pairs import PairMaker
 from concio.analysis.motion.structures import Structure, near_now, structures_of, together

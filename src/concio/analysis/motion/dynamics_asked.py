@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from concio.analysis.motion.ground import Ground
+from concio.analysis.motion.ground_motion import Ground
 from concio.analysis.motion.state import MotionState
 from concio.contact.reference import Reference
 from concio.errors import InputError

@@ -14,12 +14,12 @@ import numpy as np
 
 from concio.analysis.motion.interruption import Interruption
 from concio.analysis.motion.joint_events import JointEvent
-from concio.analysis.motion.moved_supports import begun
 from concio.analysis.motion.observer import Observer
 from concio.analysis.motion.push_asked import positive, what_moves
 from concio.analysis.motion.push_curve import PushCurve
 from concio.analysis.motion.push_result import PushEnding
 from concio.analysis.motion.scheme import Scheme
+from concio.analysis.motion.start_on_moved_supports import begun
 from concio.analysis.motion.state import MotionState
 from concio.analysis.motion.statics import FAR, Balanced, Statics
 from concio.analysis.motion.structures import Structure, near_now, structures_of, together

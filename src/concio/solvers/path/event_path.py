@@ -24,7 +24,7 @@ from concio.problem.contact_problem import Array
 from concio.problem.limits_of_work import LARGEST_VERTEX, MOST_RESTARTS
 from concio.problem.solution import Progress, ProgressCallback
 from concio.solvers.path.direction import find_direction
-from concio.solvers.path.events import Moment, changes
+from concio.solvers.path.event_words import Moment, changes
 from concio.solvers.path.near_forces import solve_near
 from concio.solvers.path.path_point import PathPoint
 from concio.solvers.path.path_state import (
