@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import gc
+import importlib
+import importlib.util
 import io
 import os
 from pathlib import Path
@@ -10,7 +12,6 @@ from typing import Any
 
 import pytest
 from hypothesis import settings
-from hypothesis.internal.conjecture import providers
 
 import samples
 
@@ -26,9 +27,11 @@ def pytest_configure(config: pytest.Config) -> None:
     settings.register_profile("fresh", deadline=None, print_blob=True)
     settings.load_profile(os.environ.get("CONCIO_CASES", "same"))
     # Hypothesis also draws constants that it reads in the modules loaded so far: with them, the draws of a test would
-    # depend on the tests that the same worker ran before it. (Another release may not have this function.)
-    if hasattr(providers, "is_local_module_file"):
-        providers.is_local_module_file = lambda path: False  # type: ignore[assignment]
+    # depend on the tests that the same worker ran before it. (Releases that draw none have no such module or function.)
+    if importlib.util.find_spec("hypothesis.internal.conjecture.providers") is not None:
+        providers: Any = importlib.import_module("hypothesis.internal.conjecture.providers")
+        if hasattr(providers, "is_local_module_file"):
+            providers.is_local_module_file = lambda path: False
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
