@@ -411,6 +411,47 @@ def test_two_pages_and_a_file_that_changes_underneath(page: Browser, client: Cli
     page.until("/width = 0.7/.test(window.concio.state().document.text)")
 
 
+def test_a_support_is_moved_by_clicking_and_its_settlement_is_asked(page: Browser, tmp_path: Path) -> None:
+    shutil.copy(TEMPLATES / "arch.toml", tmp_path / "arch.toml")
+    with window(tmp_path, tmp_path / "arch.toml") as client:
+        opened(page, client)
+        page.until("document.querySelector('#run') && !document.querySelector('#run').disabled")
+        page.click("[data-question=settle]")
+        assert "a support that moves" in page.js("document.querySelector('#missing').textContent")
+        page.click("#missing button")
+        page.click_at(*page.where(1.7, -0.1))
+        assert page.js("document.querySelector('#pane-build [name=body]').value") == "right abutment"
+        assert page.js("document.querySelector('#pane-build [name=edge]').value") == "", "it moves as a whole"
+        value(page, "#pane-build [name=displacement]", "0.002, -0.001")
+        page.click("#pane-build button.main")
+        page.until(f"{SETTLED} && window.concio.view.shown.supports.length === 1")
+        page.click("#tab-ask")
+        page.click("[data-question=settle]")
+        said = "[...document.querySelectorAll('#acts li')].map((e) => e.textContent)"
+        page.until(f"{said}.some((l) => l.includes('moves by 2 mm along x, -1 mm along y'))")
+        page.js("(() => { const i = document.querySelectorAll('#pane-ask input')[0]; i.value = '3'; "
+                "i.dispatchEvent(new Event('change')); })()")  # fmt: skip
+        page.until(f"{said}.some((l) => l.includes('moves by 6 mm along x, -3 mm along y'))")
+        assert "kN" in page.js("document.querySelector('#acts').textContent")
+        page.click("#run")
+        page.until("!document.querySelector('#running').hidden")
+        page.click("#cancel")
+        page.until("document.querySelector('#running').hidden")
+        assert page.js("document.querySelector('#verdict-text .sentence')") is None
+        page.click("#run")
+        page.until(ANSWERED)
+        sentence = page.js("document.querySelector('#verdict-text .sentence').textContent")
+        model = concio.loads(text_of(client))
+        assert sentence == concio.settle(model, "settlement", amount=3.0).verdict.sentence
+        lines = page.js("document.querySelector('#verdict-text details pre').textContent")
+        assert "reactions    before the movement | at 1 of it" in lines
+        page.click("#tab-look")
+        page.until("document.querySelector('#play')")
+        page.click("#tab-python")
+        assert "settle" in page.js("document.querySelector('#pane-python pre').textContent")
+        assert page.js(AUDIT) == []
+
+
 def test_what_a_question_needs_is_said_and_written_down_to_be_filled_in(page: Browser, client: Client) -> None:
     opened(page, client)
     page.until("document.querySelector('#run') && !document.querySelector('#run').disabled")
@@ -671,7 +712,8 @@ def box_of(path: str) -> list[float]:
 
 
 EXAMPLES = (
-    ("path", ROOT / "examples" / "spreading_arch.toml"), ("shake", TEMPLATES / "motion.toml"),
+    ("path", ROOT / "examples" / "spreading_arch.toml"), ("settle", ROOT / "examples" / "spreading_arch.toml"),
+    ("shake", TEMPLATES / "motion.toml"),
     ("assess", TEMPLATES / "assessment.toml"), ("bridge", TEMPLATES / "bridge.toml"),
     ("diagnose", ROOT / "examples" / "cracked_arch.toml"), ("study", ROOT / "examples" / "study_of_an_arch.toml"),
     ("push", TEMPLATES / "column.toml"),

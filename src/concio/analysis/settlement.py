@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
@@ -15,6 +16,7 @@ from concio.errors import InputError
 from concio.model.model import Model
 from concio.problem.solution import ProgressCallback
 from concio.representation import short_repr
+from concio.verdict.question import movement_words
 from concio.verdict.verdict import Verdict
 from concio.views import Shown
 
@@ -34,11 +36,17 @@ class SettlementResult(Shown):
         Share of the movement at each step of the second stage, 0 to 1.
     reactions : mapping of str to (n, 2) array, in space (n, 3)
         Reactions of fixed bodies and supports at the same steps [kN].
+    group : str
+        Load group of the movement.
+    amount : float
+        Factor of the movement that was asked for.
     """
 
     path: PathResult
     share: Array
     reactions: Mapping[str, Array]
+    group: str = "settlement"
+    amount: float = 1.0
 
     @property
     def reached(self) -> bool:
@@ -49,6 +57,25 @@ class SettlementResult(Shown):
     def verdict(self) -> Verdict:
         """Whether loads and movement were carried to their end: the verdict of the path of both stages."""
         return self.path.verdict
+
+    @property
+    def movement(self) -> tuple[str, ...]:
+        """What was to move, in words."""
+        return movement_words(self.path.assembly.model, self.group, self.amount)
+
+    def table(self) -> dict[str, Array]:
+        """Return the reactions as columns: a row for each support at each share of the movement."""
+        names, forces = list(self.reactions), np.array(list(self.reactions.values()), dtype=float)
+        columns = dict(zip("xyz", np.moveaxis(forces, 2, 0).reshape(forces.shape[2], -1), strict=False))
+        return {
+            "support": np.repeat(names, len(self.share)), "share": np.tile(self.share, len(names)),
+            **{f"force_{axis}": column for axis, column in columns.items()},
+        }  # fmt: skip
+
+
+def moved_groups(model: Model) -> tuple[str, ...]:
+    """Return the load groups that move supports, in the order of the model."""
+    return tuple(dict.fromkeys(s.group for s in model.supports if s.moves))
 
 
 @strict
@@ -76,7 +103,7 @@ def settle(
     Raises
     ------
     InputError
-        No support of that group moves.
+        No support of that group moves, or the amount is not a finite number other than zero.
 
     Examples
     --------
@@ -93,9 +120,16 @@ def settle(
     2.69
     """
     assembly = as_assembly(model)
-    if group not in assembly.groups:
+    known = moved_groups(assembly.model)
+    if group not in known:
         msg = f"no support is moved by the load group '{group}'"
-        raise InputError(msg, hint="give a [[supports]] entry a displacement or a rotation")
+        hint = f"groups that move supports: {', '.join(known)}" if known else (
+            "give a [[supports]] entry a displacement or a rotation"
+        )  # fmt: skip
+        raise InputError(msg, hint=hint)
+    if not (math.isfinite(amount) and amount):
+        msg = f"the movement is to be multiplied by {amount:g}"
+        raise InputError(msg, where="amount", hint="give a number other than zero: 1 is the movement of the file")
     loads = {g: 1.0 for g in assembly.groups if g != group}
     stages = [Stage("loads", loads), Stage("settlement", {group: amount})]
     path = run_path(assembly, stages, method=method, progress=progress)
@@ -105,4 +139,4 @@ def settle(
     names = results[0].reactions
     reactions = {name: np.array([r.reactions[name] for r in results]) for name in names}
     share = np.array([0.0, *(path.steps[i].parameter for i in chosen[1:])])
-    return SettlementResult(path, share, reactions)
+    return SettlementResult(path, share, reactions, group, amount)

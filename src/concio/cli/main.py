@@ -26,6 +26,7 @@ from concio.cli.prove_command import prove
 from concio.cli.push_command import push
 from concio.cli.run_command import run
 from concio.cli.schema_command import schema
+from concio.cli.settle_command import settle
 from concio.cli.shake_command import shake
 from concio.cli.study_command import study
 from concio.cli.verify_command import verify
@@ -43,8 +44,8 @@ HELP = (
 )
 
 COMMANDS = (
-    new, check, run, path, limit, push, shake, cell, continuum, assess, diagnose, bridge, prove, verify, compare, study,
-    view, window, export, schema,
+    new, check, run, path, settle, limit, push, shake, cell, continuum, assess, diagnose, bridge, prove, verify,
+    compare, study, view, window, export, schema,
 )  # fmt: skip
 
 

@@ -170,6 +170,7 @@ def _words(text: str, table: Mapping[str, str]) -> str:
     )  # fmt: skip
     said = re.sub(r"\b(\d+) supports? moved\b", r"vincoli spostati: \1", said)
     said = re.sub(r"\bin forces that balance\b", "in forze che si equilibrano", said)
+    said = re.sub(r"\babout ([xyz])\b", r"attorno a \1", said)
     return re.sub(r"\balong ([xyz])\b", r"lungo \1", said)
 
 

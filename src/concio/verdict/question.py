@@ -13,6 +13,7 @@ import numpy as np
 from concio.contact.factors import load_factor
 from concio.display import DEFAULT, Units, number
 from concio.fem.discretisation import RIGID, Discretisation
+from concio.model.actions import Support
 from concio.model.body import Body
 from concio.model.model import Model
 
@@ -190,9 +191,9 @@ def question_of(
 
 def acting_groups(assembly: Loaded) -> tuple[Acting, ...]:
     """Return every load group of an assembly at factor 1."""
-    forces, sizes = resultants(assembly), _sizes(assembly)
+    forces, sizes, none = resultants(assembly), _sizes(assembly), (0.0,) * assembly.disc.dim
     return tuple(
-        Acting(group, group_words(assembly.model, group), tuple(forces.get(group, ())), sizes.get(group, 0.0))
+        Acting(group, group_words(assembly.model, group), tuple(forces.get(group, none)), sizes.get(group, 0.0))
         for group in assembly.groups
     )
 
@@ -207,6 +208,31 @@ def group_words(model: Model, group: str) -> str:
     warmed = sum(change.group == group for change in model.temperatures)
     words += [f"{warmed} change{'s' * (warmed > 1)} of temperature"] if warmed else []
     return ", ".join(words) or "nothing"
+
+
+def movement_words(model: Model, group: str, amount: float = 1.0) -> tuple[str, ...]:
+    """Return each movement that a load group imposes, such as ``"'left wall' moves by 4 mm along x (support 'push')"``.
+
+    Parameters
+    ----------
+    model : Model
+    group : str
+    amount : float
+        Factor of the group.
+    """
+    return tuple(
+        f"'{s.body}' moves by {', '.join(_movements(s, amount, model.report))} (support '{s.name}')"
+        for s in model.supports if s.group == group and s.moves
+    )  # fmt: skip
+
+
+def _movements(support: Support, amount: float, units: Units) -> list[str]:
+    """Return the components of a movement that are not zero, in words."""
+    turns = np.ravel(support.rotation)
+    shifts = [("motion", v, f"along {axis}") for v, axis in zip(support.displacement, "xyz", strict=False)]
+    axes = "xyz" if len(turns) > 1 else "z"
+    shifts += [("rotation", v, f"about {axis}") for v, axis in zip(turns, axes, strict=True)]
+    return [f"{units.text(kind, amount * float(v), 4)} {way}" for kind, v, way in shifts if v]
 
 
 def thickness_words(model: Model) -> tuple[str, ...]:

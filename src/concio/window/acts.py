@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from concio.analysis.path import Stage
+from concio.analysis.settlement import moved_groups
 from concio.contact.applied import resultants, sideways
 from concio.contact.assembly import assemble
 from concio.contact.factors import load_factor
@@ -15,7 +16,7 @@ from concio.errors import ConcioError
 from concio.model.model import Model
 from concio.verdict.italian import in_italian
 from concio.verdict.path_verdict import stage_words
-from concio.verdict.question import Acting, acting_groups, thickness_words
+from concio.verdict.question import Acting, acting_groups, movement_words, thickness_words
 from concio.window.read_models import read
 from concio.window.worker import Tell
 
@@ -48,10 +49,17 @@ def _lines(question: str, options: Mapping[str, Any], data: Mapping[str, Any], m
     live = {str(g) for g in options.get("groups") or ()}
     if question == "push" and not live and "live" in model.load_groups and not options.get("weights"):
         live = {"live"}
+    moved = _moved(options, model)
+    if question == "settle":
+        live = {moved}
     factors = dict(_factors(options.get("factor")))
-    groups = acting_groups(assembly)
+    groups = [_role(group, live if question in ("limit", "push", "settle") else set(), factors)
+              for group in acting_groups(assembly)]  # fmt: skip
     for group in groups:
-        yield _role(group, live if question in ("limit", "push") else set(), factors).sentence(units)
+        yield group.sentence(units)
+        if group.role != "not applied":
+            amount = _number(options.get("amount")) if question == "settle" and group.group == moved else group.factor
+            yield from movement_words(model, group.group, 1.0 if math.isnan(amount) else amount)
     if not groups and question in ("run", "limit", "path"):
         yield "nothing: the model has no loads and no support is moved"
     weight = units.text("force", _weight(model), 4) if question in ("push", "assess") else ""
@@ -85,6 +93,8 @@ def _added(question: str, options: Mapping[str, Any], data: Mapping[str, Any], m
         stages = model.stages or [Stage(g, {g: 1.0}) for g in model.load_groups]
         for k, stage in enumerate(stages, 1):
             yield f"stage {k}: {stage_words(stage, units)}"
+    if question == "settle":
+        yield "supports are moved after all loads act; reactions are listed before and meanwhile"
     if question == "study":
         yield "each run has its own values, as the table [study] states"
     if question == "diagnose":
@@ -96,6 +106,20 @@ def _role(group: Acting, live: set[str], factors: Mapping[str, float]) -> Acting
         return replace(group, role="multiplied", factor=math.nan)
     factor = load_factor(factors, group.group)
     return replace(group, factor=factor, role="constant" if factor else "not applied")
+
+
+def _moved(options: Mapping[str, Any], model: Model) -> str:
+    """Return the load group of a settlement, as the command chooses it."""
+    known = moved_groups(model)
+    return str(options.get("moving") or (known[0] if len(known) == 1 else "settlement"))
+
+
+def _number(text: Any) -> float:
+    """Return the number of a field; nan where it is not complete yet."""
+    try:
+        return float(str(text))
+    except ValueError:
+        return math.nan
 
 
 def _factors(text: Any) -> Iterator[tuple[str, float]]:

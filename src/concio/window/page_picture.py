@@ -107,7 +107,7 @@ def _supports(model: Model, data: Mapping[str, Any]) -> list[dict[str, Any]]:
     names = [t.get("name") for t in data.get("supports", [])]
     return [
         {"table": names.index(s.name) if s.name in names else None, "name": s.name, "body": s.body, "edge": s.edge,
-         "directions": s.directions, "displacement": list(s.displacement), "group": s.group,
+         "directions": s.directions, "displacement": list(s.displacement), "group": s.group, "moves": s.moves,
          "polygon": s.polygon, "at": np.round(model.body(s.body).centroid, DIGITS).tolist()}
         for s in model.supports
     ]  # fmt: skip

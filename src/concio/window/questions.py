@@ -20,7 +20,8 @@ class Option:
     name : str
     flag : str
         Option of the command.
-    kind : {"groups", "text", "flag", "choice"}
+    kind : {"groups", "moved", "text", "flag", "choice"}
+        "groups" are load groups, "moved" is one that moves supports.
     choices : tuple of str
     """
 
@@ -39,7 +40,7 @@ class Asking:
     name : str
         The command.
     needs : tuple of str
-        Tables of the file of which one must be there; none for every model.
+        Tables of the file of which one must be there, or "moved" for a support that moves; none for every model.
     options : tuple of Option
     fixed : tuple of str
         Arguments that are always given.
@@ -68,6 +69,8 @@ QUESTIONS = {
         Asking("path", (), (Option("stage", "--stage"), Option("point", "--point"), Option("until", "--until"),
                             LANGUAGE), (),
                "concio.run_path(model)"),
+        Asking("settle", ("moved",), (Option("moving", "--group", "moved"), Option("amount", "--amount"), LANGUAGE), (),
+               "concio.settle(model)"),
         Asking("push", (), (GROUPS, Option("weights", "--weights", "flag"),
                             Option("direction", "--direction", "choice", ("x", "-x", "y", "-y")), LANGUAGE), (),
                "concio.push(model, live={groups})"),

@@ -33,6 +33,7 @@ keys = "loads[2].value[1]"
 low = 0.1
 high = 0.2
 """
+SINKING = ODD + '[[supports]]\nname = "sinks"\nbody = "floor"\ndisplacement = [0.0, -0.001]\n'
 CELL = "[cell]\nblock_size = [0.4, 0.2]\nfriction = 3.0\n"
 WALL = "[wall]\nlength = 0.8\nheight = 0.4\nblock_size = [0.4, 0.2]\nfriction = 3.0\nhorizontal = 0.1\n"
 BRIDGE = (
@@ -49,6 +50,7 @@ ASKS: dict[str, tuple[str, tuple[object, ...]]] = {
     "check": (ODD, ()),
     "run": (ODD, ()),
     "path": (ODD, ("--stage", "dead=1", "--stage", "live=1")),
+    "settle": (SINKING, ()),
     "limit": (ODD, ("--no-friction",)),
     "compare": (ODD, ("--methods", "auto")),
     "push": (ODD, ("--until", "5 mm")),
@@ -65,6 +67,7 @@ ASKS: dict[str, tuple[str, tuple[object, ...]]] = {
 WRONG: dict[str, tuple[str, tuple[object, ...]]] = {
     "run": (ODD, ("--method", "none")),
     "path": (ODD, ("--stage", "none=1")),
+    "settle": (SINKING, ("--group", "none")),
     "limit": (ODD, ("--group", "none")),
     "compare": (ODD, ("--methods", "none")),
     "push": (ODD, ("--group", "none")),

@@ -46,6 +46,17 @@ def test_a_push_of_the_weights_tells_what_its_verdict_tells(tmp_path: Path) -> N
     assert any("20 kN along -x" in line for line in told(tmp_path / "pillar.toml", "push", direction="-x"))
 
 
+def test_a_settlement_tells_how_far_supports_go_and_multiplies_them_alone() -> None:
+    file = ROOT / "examples" / "spreading_arch.toml"
+    lines = told(file, "settle", moving="settlement", amount="2.5")
+    assert "'right abutment' moves by 10 mm along x (support 'spreading')" in lines
+    assert any(line.startswith("settlement: multiplied") for line in lines)
+    assert any(line.startswith("dead: constant") for line in lines)
+    assert "'right abutment' moves by 4 mm along x (support 'spreading')" in told(file, "settle", amount="2 m")
+    assert "'right abutment' moves by 8 mm along x (support 'spreading')" in told(file, "run", factor="settlement=2")
+    assert not [line for line in told(file, "run", factor="settlement=0") if "moves by" in line]
+
+
 @pytest.mark.parametrize(
     ("file", "question", "word"),
     [
@@ -53,6 +64,7 @@ def test_a_push_of_the_weights_tells_what_its_verdict_tells(tmp_path: Path) -> N
         (TEMPLATES / "assessment.toml", "assess", "mechanism by mechanism"),
         (TEMPLATES / "motion.toml", "shake", "the ground moves as the file states"),
         (ROOT / "examples" / "load_stages.toml", "path", "stage 1:"),
+        (ROOT / "examples" / "spreading_arch.toml", "settle", "moves by 4 mm along x (support 'spreading')"),
         (ROOT / "examples" / "cracked_arch.toml", "diagnose", "supports are moved"),
         (ROOT / "examples" / "study_of_an_arch.toml", "study", "each run"),
     ],

@@ -10,11 +10,13 @@ export let answer = null;
 export function setAsk(hello, sender, document_, writer) { questions = hello.questions; toFill = hello.to_fill; asked = sender; doc = document_; rewrite = writer; }
 const $ = (id) => document.getElementById(id);
 
-function fits(q) { return !q.needs.length || (view.shown && q.needs.some((n) => view.shown.tables.includes(n) || (n === "vehicle" && view.shown.tables.includes("bridge") && view.shown.tables.includes("vehicle")))); }
+const movedGroups = () => [...new Set((view.shown?.supports || []).filter((s) => s.moves).map((s) => s.group))];
+function fits(q) { return !q.needs.length || (view.shown && q.needs.some((n) => (n === "moved" ? movedGroups().length : view.shown.tables.includes(n)))); }
+const needs = (table) => (table === "moved" ? t("needs_moved") : t("needs", { table }));
 
 export function questionPane(pane) {
   const buttons = questions.map((q) => el("button", {
-    "aria-pressed": String(q.name === chosen), "data-question": q.name, "aria-disabled": fits(q) ? false : "true", title: fits(q) ? t(`a_${q.name}`) : t("needs", { table: q.needs[0] }),
+    "aria-pressed": String(q.name === chosen), "data-question": q.name, "aria-disabled": fits(q) ? false : "true", title: fits(q) ? t(`a_${q.name}`) : needs(q.needs[0]),
     onclick: () => { chosen = q.name; questionPane(pane); pane.querySelector(`[data-question="${q.name}"]`).focus(); },
   }, t(`q_${q.name}`)));
   const now = questions.find((q) => q.name === chosen), there = !view.shown || fits(now);
@@ -34,7 +36,8 @@ export function questionPane(pane) {
 
 /* a question whose table is not in the text: which one, and where it can be written down at once */
 function missing(table) {
-  const told = el("section", { id: "missing" }, el("p", {}, `${t("needs", { table })[0].toUpperCase()}${t("needs", { table }).slice(1)}.`));
+  const told = el("section", { id: "missing" }, el("p", {}, `${needs(table)[0].toUpperCase()}${needs(table).slice(1)}.`));
+  if (table === "moved") told.append(el("button", { onclick: () => document.querySelector("[data-tool=support]").click() }, t("support")));
   if (toFill[table] && doc()) told.append(el("button", { onclick: () => rewrite(doc().text.replace(/\s*$/, "\n") + toFill[table]) }, t("add_table")));
   return told;
 }
@@ -53,7 +56,8 @@ function optionField(option, changed) {
     controls[name] = () => box.checked;
     return el("label", { class: "row" }, box, word);
   }
-  const one = option.kind === "choice" ? el("select", {}, ...["", ...option.choices].map((c) => el("option", { value: c }, c))) : el("input", {});
+  const choices = option.kind === "moved" ? movedGroups() : ["", ...option.choices];
+  const one = ["choice", "moved"].includes(option.kind) ? el("select", {}, ...choices.map((c) => el("option", { value: c }, c))) : el("input", {});
   if (name === "language") one.value = language;
   one.addEventListener("change", changed);
   controls[name] = () => one.value.trim();

@@ -127,9 +127,11 @@ function free(list, word) {
   for (let k = 1; ; k++) if (!names.has(`${word} ${k}`)) return `${word} ${k}`;
 }
 
+const isFixed = (name) => view.shown.bodies.find((b) => b.name === name)?.kind === "fixed";
+
 /* what was clicked in the picture */
 export function placed(found) {
-  const fixed = view.tool === "load" && view.shown.bodies.find((b) => b.name === found.body)?.kind === "fixed";
+  const fixed = view.tool === "load" && isFixed(found.body);
   const wrong = document.querySelector("#pane-build [role=alert]");
   if (wrong) wrong.textContent = fixed ? t("fixed_no_load", { name: found.body }) : "";
   if (fixed) return;
@@ -140,7 +142,8 @@ export function placed(found) {
     put(first ? "body_a" : "body_b", found.body); put(first ? "at_a" : "at_b", found.at.join(", "));
     if (first) { put("body_b", ""); put("at_b", ""); }
   } else {
-    put("body", found.body); put("at", found.at.join(", ")); put("edge", edge);
+    const whole = view.tool === "support" && isFixed(found.body); /* a fixed body moves as a whole */
+    put("body", found.body); put("at", found.at.join(", ")); put("edge", whole ? "" : edge);
   }
   say(`${found.body} ${found.at.join(", ")}`);
 }
