@@ -331,6 +331,88 @@ def test_a_load_on_a_fixed_body_is_refused_where_it_is_clicked(page: Browser, cl
     assert page.js("document.querySelector('#pane-build [name=body]').value") == "b04"
 
 
+def chosen(page: Browser) -> set[str]:
+    """Return the names of the selected blocks."""
+    code = "[...window.concio.view.selected.bodies].map((k) => window.concio.view.shown.bodies[k].name)"
+    return set(page.js(code))
+
+
+def pick(page: Browser, selector: str, text: str) -> None:
+    """Choose the entry of a list that shows a text."""
+    page.js(f"(() => {{ const s = document.querySelector({json.dumps(selector)}); "
+            f"s.value = [...s.options].find((o) => o.textContent === {json.dumps(text)}).value; "
+            "s.dispatchEvent(new Event('change')); })()")  # fmt: skip
+
+
+def test_blocks_are_selected_by_course_and_layer_and_given_a_material_and_a_load(page: Browser, tmp_path: Path) -> None:
+    for suffix in ("dxf", "toml"):
+        shutil.copy(ROOT / "examples" / f"facade.{suffix}", tmp_path)
+    before = concio.load(tmp_path / "facade.toml")
+    with window(tmp_path, tmp_path / "facade.toml") as client:
+        opened(page, client)
+        page.until("window.concio.view.shown && !window.concio.view.shown.early")
+        page.click("#tab-build")
+        one = next(b for b in before.free_bodies if b.layer == "MURATURA")
+        page.click_at(*page.where(*one.centroid))
+        assert chosen(page) == {one.name}
+        page.click("#like-course")
+        low, high = (f(p[1] for p in one.rings[0]) for f in (min, max))
+        level = {b.name for b in before.free_bodies if low < b.centroid[1] < high}
+        assert chosen(page) == level
+        assert len(level) > 5
+        assert "layer" in page.js("document.querySelector('#pane-build').textContent"), "a material is one of a layer"
+        assert page.js("document.querySelector('#apply-material')") is None
+        page.click("#load-selected")
+        assert page.js("document.querySelector('#pane-build [name=kind]').value") == "weight"
+        value(page, "#pane-build [name=value]", "0.2, 0")
+        value(page, "#pane-build [name=group]", "course")
+        page.click("#pane-build button.main")
+        page.until(f"{SETTLED} && window.concio.view.shown.loads.length === {len(before.loads) + 1}")
+        loaded = concio.loads(text_of(client), folder=tmp_path).loads[-1]
+        assert (loaded.kind, loaded.value, loaded.group, set(loaded.bodies)) == ("weight", (0.2, 0.0), "course", level)
+        page.click("[data-tool=select]")
+        for layer in ("MURATURA", "ARCHITRAVI"):
+            pick(page, "[name=select-by]", layer)
+            whole = {b.name for b in before.free_bodies if b.layer == layer}
+            assert chosen(page) == whole
+            other = "granite" if layer == "MURATURA" else "stone"
+            pick(page, "[name=set-material]", other)
+            page.click("#apply-material")
+            page.until(f"{SETTLED} && window.concio.view.shown.bodies.filter((b) => b.layer === '{layer}')"
+                       f".every((b) => b.material === '{other}')")  # fmt: skip
+            model = concio.loads(text_of(client), folder=tmp_path)
+            assert {b.material for b in model.bodies if b.layer == layer} == {other}
+        assert {b.role for b in model.bodies if b.layer == "ARCHITRAVI"} == {"lintel"}, "what else is said of it stays"
+        page.click("[data-tool=load]")
+        page.click("[data-tool=select]")
+        assert page.js(AUDIT) == []
+
+
+def test_stones_of_the_text_are_given_a_material_by_course(page: Browser, tmp_path: Path) -> None:
+    wall = concio.wall(block_size=(0.5, 0.25), length=2.0, height=1.0, block="rigid")
+    tuff = '\n[materials.tuff]\nkind = "rigid"\nunit_weight = "14 kN/m3"\n'
+    (tmp_path / "wall.toml").write_text(concio.dumps(wall) + tuff, encoding="utf-8")
+    with window(tmp_path, tmp_path / "wall.toml") as client:
+        opened(page, client)
+        page.until("window.concio.view.shown && !window.concio.view.shown.early")
+        page.click("#tab-build")
+        page.click_at(*page.where(1.1, 0.6))
+        page.js("document.querySelector('#like-course').focus()")
+        page.press("Enter")
+        names = chosen(page)
+        assert names == {b.name for b in wall.free_bodies if 0.5 < b.centroid[1] < 0.75}
+        pick(page, "[name=set-material]", "tuff")
+        page.click("#apply-material")
+        page.until(f"{SETTLED} && window.concio.view.shown.bodies.some((b) => b.material === 'tuff')")
+        model = concio.loads(text_of(client))
+        assert {b.name for b in model.bodies if b.material == "tuff"} == names
+        page.click("[data-tool=load]")
+        value(page, "#pane-build [name=body]", ", ".join(sorted(names)))
+        value(page, "#pane-build [name=at]", "1, 0.6")
+        page.click("#pane-build button.main")
+        assert "one block" in page.js("document.querySelector('#pane-build [role=alert]').textContent")
+
+
 PLACES = """(() => { const names = ['#tab-tables', '#run', '#picture', '#attention', '#verdict-head'];
     window.places = Object.fromEntries(names.map((name) => [name, []]));
     const note = () => {
@@ -931,6 +1013,11 @@ def test_pure_functions_of_the_page(page: Browser, client: Client) -> None:
     assert page.js(run.format(body=f"g.nearestEdge([1.9, 0.02], {square}, {joints}, 0.2).at")) == [2, 0.02]
     assert page.js(run.format(body="g.numbers('1, -2.5', 2)")) == [1, -2.5]
     assert page.js(run.format(body="g.numbers('1, x', 2)")) is None
+    heights = [(0, 1), (0, 1), (1, 2), (0, 2), (0.4, 1.4), (0.6, 1.6)]
+    bodies = json.dumps([{"kind": "rigid", "rings": [[[0, a], [1, a], [1, b], [0, b]]]} for a, b in heights])
+    assert page.js(run.format(body=f"g.courseOf({bodies}, 0)")) == [0, 1, 3, 4], "half of both heights"
+    solids = json.dumps([{"kind": kind, "vertices": [[0, 0, 0], [0, 0, 1]]} for kind in ("rigid", "fixed", "elastic")])
+    assert page.js(run.format(body=f"g.courseOf({solids}, 0)")) == [0, 2], "upwards is z in space, ground is no course"
 
 
 if __name__ == "__main__":

@@ -2,8 +2,9 @@
 import { t, el, field, say } from "./words.js";
 import { numbers } from "./geometry.js";
 import { inSpace, mark, view } from "./picture.js";
+import { selection } from "./selecting.js";
 
-let doc, send, form = {};
+let doc, send, form = {}, preset = [];   /* blocks to which the next load is given */
 
 function bodyNames(id) {
   const bodies = view.shown ? view.shown.bodies : [];
@@ -22,7 +23,21 @@ export function build(pane) {
   const parts = { load: loadForm, support: supportForm, tie: tieForm }[view.tool];
   pane.replaceChildren();
   if (parts) pane.append(parts(), bodyNames("body-names"), el("datalist", { id: "group-names" }, ...(view.shown ? view.shown.groups : []).map((value) => el("option", { value }))));
-  else pane.append(el("p", {}, t(inSpace() ? "space_help" : "drag_help")), selection());
+  else pane.append(el("p", {}, t(inSpace() ? "space_help" : "drag_help")), selection(doc(), send, loadOf));
+}
+
+function loadOf(names) {
+  preset = names;
+  document.querySelector("[data-tool=load]").click();
+  form.kind.value = "weight";
+  form.kind.dispatchEvent(new Event("change"));
+  form.value.focus();
+}
+
+/* the blocks that a field names: one, or several with commas between them */
+function bodiesOf(text) {
+  const known = new Set(view.shown.bodies.map((b) => b.name)), word = text.trim();
+  return !word ? undefined : known.has(word) ? [word] : word.split(",").map((part) => part.trim()).filter(Boolean);
 }
 
 function finish(heading, rows, make) {
@@ -63,16 +78,19 @@ const pointField = (plane, space, name) => field(inSpace() ? space : plane, inpu
 
 function loadForm() {
   const kinds = [["point", t("point_load")], ["pressure", t(inSpace() ? "pressure_face" : "pressure")], ["traction", t(inSpace() ? "traction_face" : "traction")], ["weight", t("share")]];
+  const names = preset.join(", ");
+  preset = [];
   const made = finish(t("load"), [
     el("p", { class: "quiet" }, t(inSpace() ? "click_face" : "click_block")),
     field(t("kind"), choice("kind", kinds)),
     field(t("value"), input("value", DOWN[dim()]), t(inSpace() ? "value_help_space" : "value_help")),
-    field(t("body"), input("body", "", { list: "body-names" })),
+    field(t("body"), input("body", names, { list: "body-names" })),
     pointField(t("at_point"), t("at_point_space"), "at"),
     surfaceField(),
     field(t("group"), input("group", "live", { list: "group-names" })),
   ], () => {
-    const kind = form.kind.value, table = { kind, group: form.group.value.trim() || "live", bodies: form.body.value.trim() ? [form.body.value.trim()] : undefined };
+    const kind = form.kind.value, table = { kind, group: form.group.value.trim() || "live", bodies: bodiesOf(form.body.value) };
+    if (kind === "point" && table.bodies?.length > 1) throw new Error(t("one_block"));
     table.value = kind === "pressure" ? needed("value", 1, t("value"))[0] : needed("value", dim(), t("value"));
     if (kind === "point") table.at = needed("at", dim(), t("at_point"));
     else if (kind !== "weight") {
@@ -146,28 +164,4 @@ export function placed(found) {
     put("body", found.body); put("at", found.at.join(", ")); put("edge", whole ? "" : edge);
   }
   say(`${found.body} ${found.at.join(", ")}`);
-}
-
-/* materials and laws for what is selected */
-function selection() {
-  const shown = view.shown, chosen = shown ? [...view.selected.bodies].map((k) => shown.bodies[k]) : [];
-  const box = el("div", {}, el("p", {}, t("selected", { count: chosen.length })));
-  if (!chosen.length || !doc()) return box;
-  const tables = new Map();
-  (doc().values || []).forEach((v) => { if (v.path[0] === "blocks" && v.path[2] === "name") tables.set(plain(v.written), v.path[1]); });
-  const mine = chosen.filter((b) => tables.has(b.name) && b.kind !== "fixed");
-  const material = el("select", {}, ...Object.keys(shown.materials).map((m) => el("option", { value: m }, m)));
-  const law = el("select", {}, ...Object.keys(shown.laws).map((m) => el("option", { value: m }, m)));
-  if (mine.length) {
-    box.append(field(t("set_material"), material), el("button", { onclick: () => send(mine.map((b) => ({ do: "set", path: ["blocks", tables.get(b.name), "material"], value: material.value }))) }, t("apply")));
-  } else box.append(el("p", { class: "quiet" }, t("from_generator")));
-  if (chosen.length === 2) {
-    box.append(field(t("set_law"), law), el("button", { onclick: () => send([{ do: "add", to: "rules", table: { law: law.value, between: chosen.map((b) => b.name) } }]) }, t("apply")));
-  }
-  return box;
-}
-
-export function plain(written) {
-  if (/^"([^"\\]*)"$/.test(written) || /^'[^'\n]*'$/.test(written)) return written.slice(1, -1);
-  return written;
 }

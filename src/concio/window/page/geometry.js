@@ -69,6 +69,13 @@ export function nextBody(bodies, from, [dx, dy]) {
   return best === null ? from : best;
 }
 
+/* the blocks at the level of one, itself included: they share at least half of their height and of its own with it */
+export function courseOf(bodies, k) {
+  const spans = bodies.map((b) => { const up = b.vertices ? b.vertices.map((p) => p[2]) : b.rings[0].map((p) => p[1]); return [Math.min(...up), Math.max(...up)]; });
+  const [low, high] = spans[k];
+  return bodies.map((b, n) => n).filter((n) => bodies[n].kind !== "fixed" && Math.min(high, spans[n][1]) - Math.max(low, spans[n][0]) > (0.5 - 1e-6) * Math.max(high - low, spans[n][1] - spans[n][0]));
+}
+
 export const rounded = (v, size) => {
   const step = 10 ** (Math.floor(Math.log10(Math.max(size, 1e-9))) - 4);
   return Number((Math.round(v / step) * step).toPrecision(9));

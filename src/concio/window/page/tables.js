@@ -1,7 +1,7 @@
 /* Tables of the model, linked with the picture both ways, and the values of the text in fields. */
 import { t, el, digits, keyWord, terms } from "./words.js";
 import { view, select } from "./picture.js";
-import { plain } from "./build.js";
+import { plain } from "./selecting.js";
 import { resultNumbers } from "./look.js";
 
 const TEXTS = ["title", "name", "body", "body_a", "body_b", "group", "material", "role", "layer", "law", "kind", "blocks_file"];
