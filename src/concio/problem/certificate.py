@@ -26,6 +26,7 @@ import scipy.sparse as sp
 
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.error_units import in_units, measure, rounding
+from concio.problem.products import largest_of_columns, product, product_of_sizes, transposed_product
 from concio.problem.tolerances import BALANCE_ROUNDING, CERTIFIED, GRANTED
 from concio.representation import short_repr
 
@@ -96,10 +97,10 @@ def kinematics(problem: ContactProblem, u: Array, t_n: Array, t_t: Array) -> Kin
     """Return gaps, slips and crushing of displacements ``u`` (N,) and forces ``t_n`` (m,), ``t_t`` (m, d-1)."""
     law = problem.laws
     m = problem.pairs
-    slip = (problem.C_t @ u).reshape(m, problem.dim - 1) - problem.slip_origin
+    slip = product(problem.C_t, u).reshape(m, problem.dim - 1) - problem.slip_origin
     slip += law.tangential_compliance[:, None] * t_t
     dilated = np.where(problem.cone.rough, law.dilatancy * np.linalg.norm(slip, axis=1), 0.0)
-    gap = problem.gap + problem.C_n @ u + law.normal_compliance * t_n - dilated
+    gap = problem.gap + product(problem.C_n, u) + law.normal_compliance * t_n - dilated
     crushing = np.where(problem.cone.capped, np.maximum(-gap, 0.0), 0.0)
     return Kinematics(gap + crushing, slip, crushing)
 
@@ -110,13 +111,13 @@ def imbalance(problem: ContactProblem, u: Array, t_n: Array, t_t: Array, force: 
     The first is R'(f + C' t), a force, or a moment over the distance of the farthest node; the second the size of what
     K u does not balance, less what rounding of u explains, at most :data:`GRANTED` of ``force`` (N,) [kN].
     """
-    applied = problem.f + problem.C_n.T @ t_n + problem.C_t.T @ t_t.ravel()
-    moved = problem.R.T @ applied
-    rest = problem.K @ u - (applied - problem.R @ moved)
-    rest = rest - problem.R @ (problem.R.T @ rest)
-    known = np.minimum(BALANCE_ROUNDING * (abs(problem.K) @ np.abs(u)), GRANTED * force)
-    farthest = abs(problem.R).max(axis=0).toarray().ravel() if problem.rigid_motions else np.zeros(0)
-    return moved / farthest, np.maximum(np.abs(rest) - known, 0.0)
+    applied = problem.f + transposed_product(problem.C_n, t_n) + transposed_product(problem.C_t, t_t.ravel())
+    R = problem.R
+    moved = transposed_product(R, applied)
+    rest = product(problem.K, u) - (applied - product(R, moved))
+    rest = rest - product(R, transposed_product(R, rest))
+    known = np.minimum(BALANCE_ROUNDING * product_of_sizes(problem.K, np.abs(u)), GRANTED * force)
+    return moved / largest_of_columns(R), np.maximum(np.abs(rest) - known, 0.0)
 
 
 def certify(
@@ -177,6 +178,6 @@ def certify(
 
 def first_unknowns(problem: ContactProblem) -> Array:
     """Return an unknown that each rigid motion moves (r,)."""
-    R = sp.csc_array(problem.R)
+    R = problem.R if problem.R.format == "csc" else sp.csc_array(problem.R)
     found: Array = R.indices[R.indptr[:-1]]
     return found

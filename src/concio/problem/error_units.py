@@ -27,6 +27,7 @@ import numpy as np
 
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.parts import Parts, connected_parts
+from concio.problem.products import product_of_sizes
 from concio.problem.tolerances import BALANCE_ROUNDING, GRANTED
 from concio.representation import short_repr
 
@@ -129,10 +130,10 @@ def rounding(problem: ContactProblem, u: Array, t_n: Array, t_t: Array, measured
     """Return what rounding may have put gaps and slips wrong by, (m,) and (m,) [m]."""
     law, s = problem.laws, problem.dim - 1
     size = np.abs(u)
-    slip = (abs(problem.C_t) @ size).reshape(problem.pairs, s) + np.abs(problem.slip_origin)
+    slip = product_of_sizes(problem.C_t, size).reshape(problem.pairs, s) + np.abs(problem.slip_origin)
     slip += law.tangential_compliance[:, None] * np.abs(t_t)
     along = np.linalg.norm(slip, axis=1)
-    normal = np.abs(problem.gap) + abs(problem.C_n) @ size + law.normal_compliance * np.abs(t_n)
+    normal = np.abs(problem.gap) + product_of_sizes(problem.C_n, size) + law.normal_compliance * np.abs(t_n)
     normal += law.dilatancy * along
     known = (BALANCE_ROUNDING * normal, BALANCE_ROUNDING * along)
     units = (measured.length_of(law.normal_compliance), measured.length_of(law.tangential_compliance))

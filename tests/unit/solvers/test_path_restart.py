@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from dataclasses import replace
 from importlib.resources import as_file, files
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import concio
 from concio.analysis.limit import limit
+from concio.problem.solution import Status
+from concio.solvers.path import restart
 from concio.solvers.path.record import Outcome
 from concio.solvers.path.restart import TENTH, is_jump, look_beyond, moves_freely, shrinks, step_between
 from concio.verdict.limit_words import limit_lines
@@ -98,3 +101,19 @@ def test_a_wall_over_an_arch_is_let_go_from_where_it_is() -> None:
     found = limit(model, search=False, friction=False)
     assert found.collapse_shown
     assert 2.1 < found.coulomb < found.associated.multiplier
+
+
+@pytest.mark.parametrize(("fallen", "order"), [(np.inf, [1e-3, 1e-4, 1e-5, 1e-2]), (2.0005, [1e-4, 1e-5, 1e-3, 1e-2])])
+def test_a_load_under_which_the_structure_fell_is_tried_last(monkeypatch, fallen, order):
+    """Let go from a later point, it is let go under smaller loads first: the larger ones may well fell it again."""
+    asked = []
+
+    def nothing_found(path, point, parameter, progress, how="near"):
+        asked.append((how, round(parameter - point.parameter, 9)))
+        return SimpleNamespace(status=Status.GAVE_UP, solved=False)
+
+    monkeypatch.setattr(restart, "solve_step", nothing_found)
+    monkeypatch.setattr(restart, "load_unit", lambda path, point: 1.0)
+    found = look_beyond(None, SimpleNamespace(parameter=2.0), 1.0, least=1e-2, fallen=fallen)
+    assert found.state is None
+    assert [share for how, share in asked if how == "let go"] == order

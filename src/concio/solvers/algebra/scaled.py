@@ -25,6 +25,7 @@ import scipy.sparse as sp
 from concio.problem.cone import Cone
 from concio.problem.contact_problem import Array, ContactProblem, Engine
 from concio.problem.natural_map import natural_map
+from concio.problem.products import product, product_of_sizes
 from concio.problem.tolerances import BALANCE_ROUNDING, GRANTED, SMOOTH
 from concio.solvers.algebra.block_factor import BlockFactor
 from concio.solvers.algebra.scales import compliances, interleaved, softness, typical_stiffness
@@ -134,16 +135,11 @@ class Scaled:
         """The rigid motions in compressed rows, transposed."""
         return sp.csr_array(self.rigid.T)
 
-    @cached_property
-    def stiffness_size(self) -> sp.csr_array:
-        """Absolute values of K."""
-        return abs(self.K)
-
     # -- equations ------------------------------------------------------------------------------------------------
 
     def along(self, v: Array) -> Array:
         """Return C v (m, d), the relative displacements of the pairs in a motion v (N,)."""
-        return np.asarray(self.C @ v).reshape(self.x.shape)
+        return product(self.C, v).reshape(self.x.shape)
 
     def opening(self, u: Array) -> Array:
         """Return x + C u (m, d): gap and slip, compliance and dilatancy not yet counted."""
@@ -155,14 +151,13 @@ class Scaled:
 
     def pull(self, t: Array) -> Array:
         """Return the nodal forces C' t (N,) of pair forces (m, d)."""
-        nodal: Array = self.transposed @ t.ravel()
-        return nodal
+        return product(self.transposed, t.ravel())
 
     def elastic(self, u: Array) -> Array:
         """Return K u (N,), free of the resultants that rounding gives it on bodies that float."""
-        forces: Array = self.K @ u
+        forces = product(self.K, u)
         if self.rigid.shape[1]:
-            forces -= self.rigid @ (self.rigid_transposed @ forces)
+            forces -= product(self.rigid, product(self.rigid_transposed, forces))
         return forces
 
     def imbalance(self, u: Array, t: Array) -> Array:
@@ -172,7 +167,7 @@ class Scaled:
 
     def unbalanced(self, u: Array, t: Array, force: float) -> float:
         """Return the largest imbalance beyond what the rounding of u explains, over the largest force."""
-        known = np.minimum(BALANCE_ROUNDING * (self.stiffness_size @ np.abs(u)), GRANTED * force)
+        known = np.minimum(BALANCE_ROUNDING * product_of_sizes(self.K, np.abs(u)), GRANTED * force)
         return float((np.abs(self.imbalance(u, t)) - known).max(initial=0.0)) / force
 
     def natural_map(self, u: Array, t: Array, unit: float = 1.0) -> Array:
@@ -207,25 +202,40 @@ class Scaled:
         forgotten : (m, d) array, optional
             Gap and slip that pairs forget at ``u``: their friction opposes the slip made from there on.
         """
-        added = e * self.inertia
+        added, K, stiffness = self._resisting(e)
         moved = self.along(u) if forgotten is None else self.along(u) - forgotten
-        problem, m = self.problem, self.pairs
+        problem, m, left = self.problem, self.pairs, self.elastic(u)
         return replace(
             self,
             problem=replace(
                 problem,
-                K=sp.csr_array((self.K + added) * (self.force / self.length)),
-                f=problem.f - self.elastic(u) * self.force,
+                K=stiffness,
+                f=problem.f - left * self.force,
                 R=sp.csc_array((len(u), 0)),
                 gap=problem.gap + moved[:, 0] * self.length,
                 slip_origin=problem.slip_origin - moved[:, 1:].reshape(m, -1) * self.length,
             ),
-            K=sp.csr_array(self.K + added),
-            f=self.f - self.elastic(u),
+            K=K,
+            f=self.f - left,
             rigid=sp.csc_array((len(u), 0)),
             x=self.x + moved,
             factor=self.factor.with_added(added),
         )
+
+    def _resisting(self, e: float) -> tuple[sp.csr_array, sp.csr_array, sp.csr_array]:
+        """Return e M, K + e M, and the same unscaled: those of the last e are kept, as steps of one e follow others."""
+        if self._resisted.get("e") != e:
+            added = e * self.inertia
+            K = sp.csr_array(self.K + added)
+            unscaled = sp.csr_array(K * (self.force / self.length))
+            self._resisted.update(e=e, matrices=(added, K, unscaled))
+        matrices: tuple[sp.csr_array, sp.csr_array, sp.csr_array] = self._resisted["matrices"]
+        return matrices
+
+    @cached_property
+    def _resisted(self) -> dict[str, Any]:
+        """What :meth:`_resisting` keeps."""
+        return {}
 
     def renewed(self, other: ContactProblem) -> Scaled:
         """Return another problem of the same bodies and pairs in the same units: other loads, gaps, origins, laws.

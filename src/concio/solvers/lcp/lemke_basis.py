@@ -79,7 +79,13 @@ class Columns:
         """Return the matrix of the columns named by ``basis`` (n,)."""
         if self.sparse:
             return self._all[:, basis]
-        return np.column_stack([self.column(int(j)) for j in basis])
+        n, j = self.n, np.asarray(basis)
+        out = np.zeros((n, j.size), order="F")
+        w, z, last = np.flatnonzero(j < n), np.flatnonzero((j >= n) & (j < 2 * n)), np.flatnonzero(j == 2 * n)
+        out[j[w], w] = 1.0
+        out[:, z] = -self._dense[:, j[z] - n]
+        out[:, last] = -self._d[:, None]
+        return out
 
 
 class ExplicitInverse:

@@ -105,6 +105,7 @@ class _Follower(PathPoint):
         self.looked_from = start if looked else None
         self.driven = False  # a pair's slip or opening stands in for the control
         self.restarts, self.restarted, self.share = 0, -np.inf, SHARES[0]
+        self.fallen = np.inf
 
     def run(
         self, max_events: int, progress: ProgressCallback | None, stop: Callable[[PathState], bool] | None
@@ -188,9 +189,12 @@ class _Follower(PathPoint):
         if straight is not None:
             return Beyond(straight)
         quick = free or point is self.looked_from
-        found = look_beyond(self.path, point, sense, end=end, quick=quick, least=self.share, progress=progress)
+        found = look_beyond(
+            self.path, point, sense, end=end, quick=quick, least=self.share, fallen=self.fallen, progress=progress
+        )
         if found.state is None:
             return found
+        self.fallen = found.fallen
         if not self.by_load and (self.control @ self.unknowns(found.state) - self.given()) * self.sense <= 0:
             return Beyond(None)  # the control point would go back
         self.restarts, self.restarted = self.restarts + 1, found.state.parameter

@@ -79,6 +79,8 @@ class Beyond:
     motion : (N,) array or None
         That mechanism or motion.
     cancelled : bool
+    fallen : float
+        Least load parameter, in the sense of the path, at which the structure moved away; inf where at none.
     """
 
     state: PathState | None
@@ -86,6 +88,7 @@ class Beyond:
     no_equilibrium: bool = False
     motion: Array | None = None
     cancelled: bool = False
+    fallen: float = np.inf
 
 
 def look_beyond(
@@ -96,6 +99,7 @@ def look_beyond(
     end: float = np.inf,
     quick: bool = False,
     least: float = 0.0,
+    fallen: float = np.inf,
     progress: ProgressCallback | None = None,
 ) -> Beyond:
     """Look for a certified state slightly beyond a point at which no rates were found.
@@ -114,13 +118,18 @@ def look_beyond(
     least : float
         Share of the present load below which increments are tried last, where restarts have followed one another
         closely.
+    fallen : float
+        Load parameter, in the sense of the path, from which on the structure moved away when it was let go before:
+        increments that reach it are the last under which it is let go again.
     progress : callable, optional
     """
     unit = load_unit(path, point)
     shares = sorted(SHARES, key=lambda share: (share < min(least, SHARES[-1]), share))
     tries: list[tuple[float, How]] = [(share, "near") for share in shares]
     if not quick:
-        tries += [(share, "let go") for share in _in_order(LET_GO, min(least, LET_GO[-2]))]
+        order = _in_order(LET_GO, min(least, LET_GO[-2]))
+        order.sort(key=lambda share: sense * point.parameter + share * unit >= fallen)
+        tries += [(share, "let go") for share in order]
     proof: Solution | None = None
     lost, beyond = 0, np.inf
     for share, how in tries:
@@ -135,6 +144,7 @@ def look_beyond(
                 proof = solution
                 break
             beyond = min(share, beyond)  # that says nothing of the loads between
+            fallen = min(sense * parameter, fallen)
             continue
         lost += how == "let go" and not solution.solved
         if solution.solved and solution.certificate.worst > ACCURATE:
@@ -144,7 +154,7 @@ def look_beyond(
         state = state_of(
             path, parameter, solution.displacement, solution.normal_force, solution.friction_force, before=point
         )
-        return Beyond(state, is_jump(path, point, state, progress, how))
+        return Beyond(state, is_jump(path, point, state, progress, how), fallen=fallen)
     motion = proof.mechanism.velocity if proof is not None and proof.mechanism is not None else None
     return Beyond(None, no_equilibrium=proof is not None, motion=motion)
 

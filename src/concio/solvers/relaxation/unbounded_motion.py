@@ -42,6 +42,7 @@ import numpy as np
 from concio.problem.certificate import certify
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.error_units import measure
+from concio.problem.products import product, transposed_product
 from concio.problem.solution import Departure
 from concio.problem.tolerances import MOVING_ON, RIGID_BODY, SLIDES, STILL_PAIR
 from concio.solvers.algebra.scaled import Scaled
@@ -141,8 +142,8 @@ def _states_moved(s: Scaled, now: Finished, e: float) -> Departure | None:
         if not 1.0 <= float(np.abs(step).max()) < np.inf:
             return None  # it comes to rest
     R = s.problem.R
-    a = e * (R @ (R.T @ step))
-    held = replace(s, f=s.f - s.inertia @ a)
+    a = e * product(R, transposed_product(R, step))
+    held = replace(s, f=s.f - product(s.inertia, a))
     u = u - step * (float(step @ u) / float(step @ step))
     for _ in range(2):
         u, t, _ = given.refined(held, laws, u, t)
@@ -160,7 +161,7 @@ def _forgotten(s: Scaled, u: Array, t: Array, step: Array) -> Array:
 def _proof(s: Scaled, a: Array, u: Array, t: Array) -> Departure | None:
     """Return what the rigid part of an acceleration proves, from a point far enough along its motion."""
     R = s.problem.R
-    a = R @ (R.T @ a)
+    a = product(R, transposed_product(R, a))
     top = float(np.abs(a).max(initial=0.0))
     if not top > 0:
         return None
@@ -197,16 +198,16 @@ def verify_motion(problem: ContactProblem, a: Array, u: Array, t_n: Array, t_t: 
     """
     law = problem.laws
     top = float(np.abs(a).max(initial=0.0)) or 1.0
-    w_t = (problem.C_t @ a).reshape(t_t.shape)
+    w_t = product(problem.C_t, a).reshape(t_t.shape)
     speed = np.linalg.norm(w_t, axis=1)
     moving = without_slip_across(problem, u, t_t, np.where((speed > STILL_PAIR * top)[:, None], w_t, 0.0))
-    moving = replace(moving, f=problem.f - problem.inertia @ a, load=problem.applied)
+    moving = replace(moving, f=problem.f - product(problem.inertia, a), load=problem.applied)
     certificate, units = certify(moving, u, t_n, t_t), measure(moving, u, t_n, t_t)
     force = units.pair_force
-    stiffness = float(abs(problem.K).max()) if problem.K.nnz else 1.0
-    rigid = float(np.abs(problem.K @ a).max(initial=0.0)) / (stiffness * top)
+    stiffness = float(np.abs(problem.K.data).max()) if problem.K.nnz else 1.0
+    rigid = float(np.abs(product(problem.K, a)).max(initial=0.0)) / (stiffness * top)
     cone = problem.cone
-    w_n = problem.C_n @ a - np.where(cone.rough, law.dilatancy * speed, 0.0)
+    w_n = product(problem.C_n, a) - np.where(cone.rough, law.dilatancy * speed, 0.0)
     opening, closing = np.maximum(w_n, 0.0) / top, np.maximum(-w_n, 0.0) / top
     reserve = np.where(cone.capped, np.maximum(cone.cap - t_n, 0.0) / force, np.inf)  # against crushing
     wrong_way = np.linalg.norm(t_t - cone.opposing(t_n, w_t), axis=1) / force
@@ -227,7 +228,7 @@ def without_slip_across(problem: ContactProblem, u: Array, t_t: Array, w_t: Arra
     What a pair slipped across the direction of its motion stays bounded while the slip along it grows without bound: in
     the limit the slip has the direction of its rate. In the plane there is no across.
     """
-    slip = (problem.C_t @ u).reshape(t_t.shape) - problem.slip_origin
+    slip = product(problem.C_t, u).reshape(t_t.shape) - problem.slip_origin
     slip += problem.laws.tangential_compliance[:, None] * t_t
     speed = np.linalg.norm(w_t, axis=1)
     direction = w_t / np.where(speed > 0, speed, 1.0)[:, None]
