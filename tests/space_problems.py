@@ -31,6 +31,8 @@ class Built:
     problem: ContactProblem
     live: Array
     centres: Array
+    grids: tuple[Array, ...] = ()
+    """Nodes of the blocks, where nothing is turned."""
 
     def at(self, factor: float) -> ContactProblem:
         """The problem under dead load and ``factor`` times the live load."""
@@ -153,13 +155,13 @@ def build(
             R=sp.csc_array(sp.eye_array(R.shape[1])), bodies=np.arange(0, R.shape[1] + 1, 6), area=areas,
             inertia=(R.multiply(R)).T @ mass,
         )  # fmt: skip
-        return Built(problem, R.T @ live, centres)
+        return Built(problem, R.T @ live, centres, tuple(grids))
     R = sp.csr_array(sp.block_diag([np.linalg.qr(g)[0] for g in motions]))
     problem = ContactProblem(
         K=K, f=dead, C_n=sp.csr_array(C[normal_rows]), C_t=sp.csr_array(C[friction_rows]), gap=np.zeros(m), laws=laws,
         R=sp.csc_array(R), bodies=offsets, area=areas, inertia=mass,
     )  # fmt: skip
-    return Built(problem, live, centres)
+    return Built(problem, live, centres, tuple(grids))
 
 
 def _body(x: Array, shape: tuple[int, ...], elastic: bool) -> tuple[Array, Array]:

@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from concio.analysis.margins import friction_by_solving, load_margin
     from concio.analysis.motion.dynamics import dynamics
     from concio.analysis.motion.dynamics_result import DynamicsResult
+    from concio.analysis.motion.let_go import let_go
     from concio.analysis.motion.push import push
     from concio.analysis.motion.push_result import PushResult
     from concio.analysis.motion.rocking import rock
@@ -108,6 +109,7 @@ _HOMES = {
     "concio.analysis.result": ("Result",),
     "concio.analysis.motion.dynamics": ("dynamics",),
     "concio.analysis.motion.dynamics_result": ("DynamicsResult",),
+    "concio.analysis.motion.let_go": ("let_go",),
     "concio.analysis.motion.push": ("push",),
     "concio.analysis.motion.push_result": ("PushResult",),
     "concio.analysis.motion.rocking": ("rock",),
@@ -244,6 +246,7 @@ __all__ = [
     "friction_margin",
     "halve_blocks",
     "homogenise",
+    "let_go",
     "limit",
     "load",
     "load_margin",

@@ -14,6 +14,7 @@ from __future__ import annotations
 from concio.analysis.motion.dynamics import dynamics
 from concio.analysis.motion.dynamics_result import DynamicsResult
 from concio.analysis.motion.energy import EnergyBalance
+from concio.analysis.motion.let_go import let_go
 from concio.analysis.motion.push import push
 from concio.analysis.motion.push_result import PushResult
 from concio.analysis.motion.rocking import RockingResult, rock
@@ -31,6 +32,7 @@ __all__ = [
     "Record",
     "RockingResult",
     "dynamics",
+    "let_go",
     "load_motion",
     "push",
     "read_record",

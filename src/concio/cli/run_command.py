@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -11,6 +11,11 @@ from concio.cli.options import EngineOf, Factors, File, Json, Language, Out, Qui
 from concio.cli.outcome import answer, guarded, print_json
 from concio.cli.output import check_directory
 from concio.cli.progress import progress_bar, verdict_so_far
+
+if TYPE_CHECKING:
+    from concio.analysis.motion.let_go import LetGo
+    from concio.analysis.result import Result
+    from concio.problem.solution import ProgressCallback
 
 
 @guarded
@@ -24,6 +29,10 @@ def run(
     json: Json = False,
     quiet: Quiet = False,
     units: UnitsOf = None,
+    let_go: Annotated[
+        bool,
+        typer.Option("--let-go", help="Where the step stays undecided, let the structure go at rest and follow it."),
+    ] = False,
     figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw figures into --out.")] = True,
 ) -> int:
     """Solve one load step and print the result.
@@ -41,19 +50,32 @@ def run(
         result = concio.solve(
             model, method=method, factors=factors_of(factor), on_failure="return", progress=progress, **chosen
         )
-    verdict_so_far(result.verdict)
+        followed = _followed(result, progress) if let_go else None
+    verdict = result.verdict if followed is None else followed.verdict
+    verdict_so_far(verdict)
     if not json:
         answer(result_lines(result))
+        if followed is not None:
+            answer([f"  let go: {verdict.status}. {verdict.sentence}", *verdict.lines(model.report)])
     written: list[Path] = []
     if out is not None:
         from concio.io.result_dir import write_result
 
         written = write_result(result, out, figures=figures, language=language)
     if json:
-        print_json(result.summary())
+        print_json((followed or result).summary())
     else:
         answer(where_written(written))
-    return result.verdict.exit_code
+    return verdict.exit_code
+
+
+def _followed(result: Result, progress: ProgressCallback | None) -> LetGo | None:
+    """Return what a structure does that is let go; None where its load step is decided."""
+    import concio
+    from concio.problem.solution import Status
+
+    undecided = result.status in (Status.UNDECIDED, Status.GAVE_UP)
+    return concio.let_go(result, progress=progress) if undecided else None
 
 
 def where_written(paths: list[Path]) -> list[str]:

@@ -59,6 +59,7 @@ PLAIN: dict[str, Callable[[object], bool]] = {
     "begun": _number, "ground_ends": _number, "stated": lambda v: v is None or _number(v),
     "until": lambda v: v is None or _number(v), "by_load": lambda v: isinstance(v, bool),
     "reversed": lambda v: isinstance(v, bool), "asked": lambda v: isinstance(v, str), "fallen": _words,
+    "refuted": lambda v: isinstance(v, str),
     "rests": lambda v: isinstance(v, bool),
     "stands": lambda v: v is None or isinstance(v, bool),
     "reactions_of": _words, "notes": _words, "live": _words,

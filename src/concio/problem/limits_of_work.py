@@ -114,3 +114,12 @@ STEP_PROBLEMS = 12
 
 MOTION_STEPS = 20_000_000
 """Largest number of steps of a motion: one block takes some hours for them, and their histories a gigabyte."""
+
+LET_GO_WORK = 4_000_000
+"""Steps of a motion from rest, times unknowns and pairs, that are spent on a load step that stays undecided."""
+
+LEAST_LET_GO = 500
+"""Number of steps that are spent on it in any case."""
+
+MOST_LET_GO = 10_000
+"""Largest number of steps that are spent on it."""

@@ -35,6 +35,7 @@ HEADLINES = {
     Outcome.UNDECIDED: "The motion could not be continued to its end.",
     Outcome.INCOMPLETE: "The motion was not followed to its end.",
 }
+NO_START = "Whether it stands before the ground moves was not shown."
 CAPPED = "Whether contacts at corners and edges crush was not checked."
 SHORT = "no equilibrium was found from where its supports have moved"
 """Begins the note of a motion whose supports did not get to where they were asked to be."""
@@ -91,9 +92,17 @@ def _without_mass(found: DynamicsResult) -> tuple[str, ...]:
 
 
 def _headline(found: DynamicsResult, outcome: Outcome) -> str:
-    if outcome is Outcome.INCOMPLETE and found.ending.name != "STOPPED":
+    if outcome is Outcome.INCOMPLETE and found.ending.name != "STOPPED" and not _begins_nowhere(found):
         return "What happens to some bodies could not be resolved."
-    return HEADLINES[outcome] if found.stands is not False else "The structure does not stand at the start."
+    if found.stands is False and not _begins_nowhere(found):
+        return "The structure does not stand at the start."
+    return NO_START if _begins_nowhere(found) and outcome is Outcome.INCOMPLETE else HEADLINES[outcome]
+
+
+def _begins_nowhere(found: DynamicsResult) -> bool:
+    """Return whether no equilibrium was found at the start, while nothing shows that there is none."""
+    short = any(note.startswith(SHORT) for note in found.notes)
+    return found.stands is False and not found.refuted and not short
 
 
 def _outcome(found: DynamicsResult) -> Outcome:
@@ -101,19 +110,22 @@ def _outcome(found: DynamicsResult) -> Outcome:
     ending = found.ending.name
     if not found.certified:
         return Outcome.UNDECIDED
-    if found.fallen or (found.stands is False and ending != "UNSOLVED"):
+    open_ = _begins_nowhere(found)
+    if found.fallen or (found.stands is False and not open_ and ending != "UNSOLVED"):
         return Outcome.FAILS
     if ending == "UNSOLVED":
         return Outcome.UNDECIDED
     if ending == "STOPPED":
         return Outcome.INCOMPLETE
-    return Outcome.HOLDS if found.rests and found.end.time >= found.ground_ends * (1 - 1e-9) else Outcome.MOVING
+    if not found.rests or found.end.time < found.ground_ends * (1 - 1e-9):
+        return Outcome.MOVING
+    return Outcome.INCOMPLETE if open_ else Outcome.HOLDS
 
 
 def _status(found: DynamicsResult, outcome: Outcome) -> str:
     if not found.certified:
         return "not_certified"
-    if outcome is Outcome.FAILS and found.stands is False:
+    if outcome is Outcome.FAILS and found.stands is False and not _begins_nowhere(found):
         return "does_not_stand"
     names = {Outcome.HOLDS: "at_rest", Outcome.FAILS: "fallen", Outcome.MOVING: "moving"}
     if found.ending.name == "OVERTURNED":
@@ -145,7 +157,14 @@ def _answer(found: DynamicsResult, outcome: Outcome) -> str:
     """Return what became of the structure, in sentences with numbers."""
     time = f"{number(float(found.end.time), 5)} s"
     told = []
-    if found.stands is False:
+    if found.refuted:
+        told.append(f"The structure does not stand before the ground moves. {found.refuted}")
+    elif _begins_nowhere(found):
+        told.append(
+            "No equilibrium under its loads was found before the ground moves, and nothing shows that there is none: "
+            "the motion begins with the bodies at rest as described."
+        )
+    elif found.stands is False:
         told.append("The structure does not stand before the ground moves: no equilibrium under its loads was found.")
     if found.fallen:
         more = f", and {len(found.fallen) - MOST_FALLEN} more" if len(found.fallen) > MOST_FALLEN else ""
@@ -190,6 +209,8 @@ def _of_what(found: DynamicsResult) -> str:
 
 def _unchecked(found: DynamicsResult, outcome: Outcome) -> tuple[str, ...]:
     """Return what would be expected and was not seen."""
+    if _begins_nowhere(found) and found.rests:
+        return ("the motion from an equilibrium under the loads: none was found at the start",)
     if outcome not in (Outcome.MOVING, Outcome.INCOMPLETE):
         return ()
     end = float(found.end.time)

@@ -10,6 +10,7 @@ import pytest
 
 import concio
 from commands import run
+from concio.analysis.motion import dynamics as dynamics_module
 from concio.analysis.motion import push as push_module
 from concio.analysis.motion import push_apart
 from concio.analysis.motion.fate import tilted
@@ -76,6 +77,28 @@ def test_a_column_that_leans_too_far_does_not_stand(tmp_path):
     code, told = shaken(file_of(tmp_path, LEANS), "--pulse", "sine,0.01 g,0.1 s", "--duration", "0.2 s")
     assert (code, told["status"]) == (3, "does_not_stand")
     assert "does not stand before the ground moves" in told["sentence"]
+
+
+def test_a_start_that_nothing_refutes_is_not_said_to_fall(tmp_path, monkeypatch):
+    """Where no equilibrium was found and nothing proves that there is none, a fall has to be seen."""
+    path = file_of(tmp_path, LEANS)
+    proven = concio.dynamics(concio.load(path), duration=0.1)
+    assert proven.refuted.startswith("Proven")
+    assert proven.verdict.outcome is Outcome.FAILS
+    monkeypatch.setattr(dynamics_module, "proof_at_rest", lambda *_: "")
+    found = concio.dynamics(concio.load(path), duration=0.1)
+    assert found.fallen, "it leans beyond its own equilibrium, which is seen in the plane"
+    found = replace(found, fallen=())
+    assert (found.stands, found.refuted) == (False, "")
+    assert (found.verdict.outcome, found.verdict.status) == (Outcome.MOVING, "moving")
+    assert "nothing shows that there is none" in found.verdict.sentence
+    assert "does not stand" not in f"{found.verdict.sentence} {found.verdict.headline}"
+    rests = replace(found, rests=True)
+    assert rests.verdict.outcome is Outcome.INCOMPLETE
+    assert "the motion from an equilibrium under the loads: none was found" in rests.verdict.sentence
+    falls = replace(found, fallen=("'block' has turned by 60.1 degrees",))
+    assert (falls.verdict.outcome, falls.verdict.status) == (Outcome.FAILS, "fallen")
+    assert falls.verdict.headline == "The structure falls."
 
 
 @pytest.mark.long
@@ -234,7 +257,7 @@ def test_a_push_that_does_not_begin_says_what_shows_it(tmp_path, monkeypatch):
     told = proven.value.verdict
     assert told.outcome is Outcome.FAILS
     assert told.proof == concio.solve(concio.load(file_of(tmp_path, LEANS)), on_failure="return").verdict.proof
-    monkeypatch.setattr(push_module, "_proof_at_rest", lambda *_: "")
+    monkeypatch.setattr(push_module, "proof_at_rest", lambda *_: "")
     with pytest.raises(NoEquilibriumError) as seen:
         concio.push(concio.load(file_of(tmp_path, LEANS)))
     assert seen.value.verdict.proof == FOLLOWED_AWAY

@@ -17,6 +17,7 @@ from concio.analysis.motion.history import Recorder
 from concio.analysis.motion.interruption import Interruption
 from concio.analysis.motion.mover import Mover, Row, shifted
 from concio.analysis.motion.near_origin import Near
+from concio.analysis.motion.not_begun import proof_at_rest
 from concio.analysis.motion.observer import Observer
 from concio.analysis.motion.pace import Pace
 from concio.analysis.motion.scheme import Drive, Scheme
@@ -194,6 +195,7 @@ class _Run:
     stated: float | None
     engine: Engine | None
     stands: bool | None = None
+    refuted: str = ""
     falls: bool = True
     fallen: list[str] = field(default_factory=list)
     rests: bool = False
@@ -244,6 +246,8 @@ class _Run:
                 break
             structures = apart
         self.stands = all(one[1] for one in found)
+        if not self.stands:
+            self.refuted = proof_at_rest(self.reference.model, self.factors)
         self.notes += dict.fromkeys(one[2] for one in found if one[2])
         return structures, whole
 
@@ -386,7 +390,7 @@ class _Run:
             ground=self.ground.acceleration(steps.time), seconds=self.seconds,
             notes=(*self.notes, *(mover.outran for mover in self.movers if mover.outran)),
             lent_compliance=max(mover.lent for mover in self.movers), asked=self.ground.words,
-            begun=self.started, stated=self.stated, stands=self.stands,
+            begun=self.started, stated=self.stated, stands=self.stands, refuted=self.refuted,
             fallen=tuple(self.fallen), rests=self.rests, ground_ends=self.started + self.ground.duration,
             structures=tuple(tuple(mover.structure.bodies.tolist()) for mover in self.movers),
         )  # fmt: skip

@@ -80,6 +80,8 @@ class DynamicsResult(Shown):
         Duration that was asked for; None where the motion was followed until rest or a fall [s].
     stands : bool or None
         Whether an equilibrium was found at the start; None where none was asked for.
+    refuted : str
+        What proves that there is no equilibrium under the loads at the start; empty where nothing does.
     fallen : tuple of str
         Blocks that have fallen or passed their own equilibrium, a phrase each.
     rests : bool
@@ -110,6 +112,7 @@ class DynamicsResult(Shown):
     ground_ends: float = 0.0
     stated: float | None = None
     stands: bool | None = None
+    refuted: str = ""
     fallen: tuple[str, ...] = ()
     rests: bool = False
     structures: tuple[tuple[int, ...], ...] = ()

@@ -14,6 +14,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from concio.analysis.motion.holding_still import held_still, may_be_asked
 from concio.analysis.motion.joints import SAG
 from concio.analysis.motion.observer import Observer
 from concio.analysis.motion.scheme import Scheme
@@ -39,6 +40,12 @@ CALM = 1e-8
 
 WHILE = 0.1
 """How long nothing may seem to move before an equilibrium is looked for: what turns back is slow for an instant [s]."""
+
+STILLER = 1e-2
+"""Share of that energy below which forces within friction are asked for where no equilibrium near by was found."""
+
+LONGER = 0.5
+"""How long nothing may seem to move before they are: what begins to move away is slow for an instant, too [s]."""
 
 NEAR = 1e-3
 """Distance of that equilibrium over the width of the bodies."""
@@ -73,6 +80,7 @@ class Watch:
         width, mass = observer.maker.width, float(self.reference.body_mass.sum())
         self.still = CALM * mass * self.reference.gravity * width
         self.calm_since: float | None = None
+        self.stiller_since: float | None = None
 
     def overturned(self, state: MotionState) -> list[str]:
         """Return the blocks that have turned over, a phrase each."""
@@ -126,7 +134,12 @@ class Watch:
         """Return whether nothing has seemed to move for a while; to be asked after every step."""
         f = self.observer.frames
         x = f.unknowns(state.velocity, state.spin, state.nodal, state.placement.turns)
-        if f.kinetic_energy(x) > self.still:
+        moving = f.kinetic_energy(x)
+        if moving > STILLER * self.still:
+            self.stiller_since = None
+        elif self.stiller_since is None:
+            self.stiller_since = state.time
+        if moving > self.still:
             self.calm_since = None
         elif self.calm_since is None:
             self.calm_since = state.time
@@ -141,9 +154,16 @@ class Watch:
         )  # fmt: skip
         found = statics.balance(still, 0.0)
         near = float(np.abs(found.moved).max(initial=0.0)) <= NEAR * self.observer.maker.width
-        if not (found.found and near):
+        rests = (found.found and near) or self._held(statics, still)
+        if not rests:
             self.calm_since = None
-        return found.found and near
+        return rests
+
+    def _held(self, statics: Statics, still: MotionState) -> bool:
+        """Return whether blocks that have long been still are held by forces within friction where they stand."""
+        if self.stiller_since is None or still.time - self.stiller_since < LONGER or not may_be_asked(statics):
+            return False
+        return held_still(statics, statics.certificate, still)
 
     def _name(self, b: int) -> str:
         return self.reference.model.bodies[b].name

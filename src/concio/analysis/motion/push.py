@@ -11,6 +11,7 @@ import numpy as np
 from concio.analysis.entry_point import entry_point
 from concio.analysis.motion.interruption import Interruption
 from concio.analysis.motion.near_origin import Near
+from concio.analysis.motion.not_begun import proof_at_rest
 from concio.analysis.motion.push_apart import NoStartError, PushAsked, followed
 from concio.analysis.motion.push_asked import (
     control_asked,
@@ -21,17 +22,16 @@ from concio.analysis.motion.push_asked import (
 )
 from concio.analysis.motion.push_result import PushResult
 from concio.analysis.motion.scheme import Scheme
-from concio.analysis.step import solve
 from concio.arguments import strict
 from concio.contact.applied import free_group, pushed
-from concio.contact.assembly import Assembly, assemble
+from concio.contact.assembly import assemble
 from concio.contact.points import Followed
 from concio.contact.reference import Reference
 from concio.errors import ConcioError, InputError, NoEquilibriumError, SolverError
 from concio.model.model import Model
 from concio.model.stages import ControlPoint
 from concio.problem.contact_problem import Engine
-from concio.problem.solution import PROVEN_FAILURES, ProgressCallback
+from concio.problem.solution import ProgressCallback
 from concio.units import GRAVITY
 from concio.verdict.not_standing import FOLLOWED_AWAY, not_standing
 from concio.verdict.verdict import Outcome
@@ -165,7 +165,7 @@ def push(
 def _not_begun(model: Model, lost: NoStartError, factors: Mapping[str, float], live: tuple[str, ...]) -> ConcioError:
     """Return what to raise where no equilibrium was found before the push: proven, seen or open."""
     assembly, wanted = assemble(model), "a capacity curve at large displacements"
-    proof = _proof_at_rest(assembly, {**factors, **dict.fromkeys(live, 0.0)}) if lost.share in (0.0, 1.0) else ""
+    proof = proof_at_rest(assembly, {**factors, **dict.fromkeys(live, 0.0)}) if lost.share in (0.0, 1.0) else ""
     proof = proof or (FOLLOWED_AWAY if lost.away else "")
     told = not_standing(
         assembly, wanted, str(lost), factors=factors, multiplied=live, moving=lost.moving, proof=proof,
@@ -176,12 +176,3 @@ def _not_begun(model: Model, lost: NoStartError, factors: Mapping[str, float], l
         return SolverError(told.answer, hint=hint, verdict=told)
     hint = "see 'concio run' for its collapse; the factors of dead loads may be meant otherwise"
     return NoEquilibriumError(str(lost), hint=hint, verdict=told)
-
-
-def _proof_at_rest(assembly: Assembly, factors: Mapping[str, float]) -> str:
-    """Return what proves that the constant loads are not carried where the bodies stand; empty where nothing does."""
-    try:
-        result = solve(assembly, factors=factors, on_failure="return")
-    except ConcioError:
-        return ""
-    return result.verdict.proof if result.solution.status in PROVEN_FAILURES else ""

@@ -118,7 +118,7 @@ class SmallDisplacements:
         self.no_spin, self.no_velocity = at_rest.no_spin, np.zeros_like(at_rest.centre)
         self.nowhere = np.zeros(reference.disc.dim)
         self._matrices = [self._stiffness(share * self.gravity / self.width) for share in RESISTANCE]
-        self._bare = self._stiffness(0.0)
+        self.bare = self._stiffness(0.0)
 
     def _stiffness(self, resistance: float) -> StepMatrix:
         matrices, n = self.reference.resisting, self.frames.n
@@ -156,7 +156,7 @@ class SmallDisplacements:
         """
         b = look.dead + multiplier * look.live + look.internal
         force = float(np.abs(look.dead + multiplier * look.live).sum()) or 1.0
-        matrix = self._bare if level is None else self._matrices[level]
+        matrix = self.bare if level is None else self._matrices[level]
         if look.turning.any() and level is not None:
             matrix = StepMatrix(matrix.sparse + sp.diags_array(look.turning, format="csr"))
         return assembled(matrix, b, look.parts, force, 1e-3 * self.width)

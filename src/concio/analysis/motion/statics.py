@@ -260,7 +260,7 @@ class Statics(SmallDisplacements):
             k = len(found.t) - 2 * len(self.maker.ties)
             residual = self.certificate.equilibrium(
                 before, state, look.memory, slid, found.t[: k + len(self.maker.ties)],  # ties at rest do not swing
-                self.acting(look, multiplier), self.factors_at(multiplier), self._bare, 1e-3 * self.width,
+                self.acting(look, multiplier), self.factors_at(multiplier), self.bare, 1e-3 * self.width,
             )  # fmt: skip
             answer = JointAnswer(look.data.shift, found.t[:m], found.states.normal[:m], found.states.direction[:m])
             memory = after_equilibrium(self.maker.joints, look.memory, look.joint, look.data, answer)
