@@ -28,7 +28,9 @@ def masses(disc: Discretisation) -> sp.csr_array:
     free = [b for b in model.bodies if b.kind != "fixed"]
     weights = {b.material: model.materials[b.material].unit_weight for b in free}
     heavy = all(w > 0 for w in weights.values())
-    blocks: list[sp.csr_array | Array] = []
+    rows, columns, values = list[Array](), list[Array](), list[Array]()
+    elastic: dict[int, tuple[Array, Array, Array, int]] = {}  # bodies of one shape have one matrix, but for density
+    begin = 0
     for b, s in enumerate(disc.shape_of):
         if s < 0 and s != RIGID:
             continue
@@ -39,9 +41,26 @@ def masses(disc: Discretisation) -> sp.csr_array:
             rotating = len(tensor)
             block = np.eye(disc.dim + rotating)
             block[-rotating:, -rotating:] = 0.5 * (tensor + tensor.T)
-            blocks.append(density * body.volume * block)
+            row, column = np.nonzero(block)
+            value, size = density * body.volume * block[row, column], len(block)
         else:
-            blocks.append(sp.kron(density * disc.shapes[s].mass, np.eye(disc.dim), format="csr"))
-    if not blocks:
+            if s not in elastic:
+                elastic[s] = _in_every_direction(disc.shapes[s].mass, disc.dim)
+            row, column, value, size = elastic[s]
+            value = density * value
+        rows.append(row + begin)
+        columns.append(column + begin)
+        values.append(value)
+        begin += size
+    if not rows:
         return sp.csr_array((disc.unknowns, disc.unknowns))
-    return sp.csr_array(sp.block_diag(blocks, format="csr"))
+    every = np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))
+    return sp.csr_array(sp.coo_array(every, shape=(begin, begin)))
+
+
+def _in_every_direction(mass: sp.csr_array, dim: int) -> tuple[Array, Array, Array, int]:
+    """Return rows, columns and values of the mass of nodes (n, n) as one of displacements (n d, n d), and n d."""
+    of = sp.coo_array(mass)
+    d = np.arange(dim)
+    row, column = (of.row[:, None] * dim + d).ravel(), (of.col[:, None] * dim + d).ravel()
+    return row, column, np.repeat(of.data, dim), of.shape[0] * dim

@@ -39,6 +39,7 @@ CUT = {
     "no forces": "its joints carry no forces in equilibrium",
     "not asked": "no limit state asks for it",
     "no state": "no collapse state is found from which to continue",
+    "jams": "its blocks jam and the multiplier rises far above alpha_0",
     "long": "too many changes of its joints to follow",
     "far": "it does not end",
 }

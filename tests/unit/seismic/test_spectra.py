@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+import concio
 from concio.analysis.seismic.checks import Check, limit_of
 from concio.analysis.seismic.curve import CapacityCurve
 from concio.analysis.seismic.floor import FloorSpectrum, Mode, Storeys
@@ -160,3 +161,15 @@ def test_the_first_mode_grows_from_the_base_to_the_top(z: float, shape: float) -
 def test_a_building_of_no_height_or_of_part_of_a_storey_is_refused(wrong: dict[str, float]) -> None:
     with pytest.raises(InputError):
         Storeys(**wrong)
+
+
+@pytest.mark.parametrize("where", ["ground", "height"])
+def test_one_period_at_a_time_gives_what_all_at_once_give(where: str) -> None:
+    place = concio.Site({"SLV": {"a_g": 0.2, "F0": 2.45, "Tc": 0.32}}, soil="B", building={"height": 6.5, "storeys": 2})
+    ground = place.spectrum(place.at("SLV"))
+    spectrum = ground if where == "ground" else place.at_height(ground, 4.0)
+    assert spectrum is not None
+    periods = np.linspace(0.0, 12.0, 4001)
+    for xi in (5.0, 8.0):
+        for of in (spectrum.acceleration, spectrum.displacement):
+            assert [float(of(float(T), xi)) for T in periods] == pytest.approx(of(periods, xi), rel=1e-14, abs=1e-300)

@@ -141,9 +141,11 @@ class FloorSpectrum:
 
     def filtered(self, T: Any, xi: float = 5.0) -> Array:
         """Return what the modes alone bring to the height at the periods ``T`` (n,) [s], in m/s2."""
+        low, high = self.rules["lower"], self.rules["upper"]
+        if isinstance(T, float):
+            return np.asarray(math.sqrt(sum(self._of_mode(m, T, xi, low, high) ** 2 for m in self.modes)))
         T = np.asarray(T, dtype=float)
         squares = np.zeros_like(T)
-        low, high = self.rules["lower"], self.rules["upper"]
         for mode in self.modes:
             K, a = self.amplification(mode, xi), self.peak(mode)
             before, after = low["share"] * mode.T, high["share"] * mode.T
@@ -153,8 +155,22 @@ class FloorSpectrum:
         found: Array = np.sqrt(squares)
         return found
 
+    def _of_mode(self, mode: Mode, T: float, xi: float, low: Mapping[str, float], high: Mapping[str, float]) -> float:
+        """Return what one mode brings at one period [m/s2]."""
+        K, a = self.amplification(mode, xi), self.peak(mode)
+        before, after = low["share"] * mode.T, high["share"] * mode.T
+        less = 1.0
+        if before > T:
+            less = 1.0 + (K - 1.0) * (1.0 - T / before) ** low["power"]
+        elif after < T:
+            less = 1.0 + (K - 1.0) * (T / after - 1.0) ** high["power"]
+        return K * a / less
+
     def acceleration(self, T: Any, xi: float = 5.0) -> Array:
         """Return S_eZ at the periods ``T`` (n,) [s], in m/s2: beyond T_1 not less than on the ground."""
+        if isinstance(T, float):
+            own, beyond = self.filtered(T, xi), self.modes[0].T < T
+            return np.maximum(own, self.ground.acceleration(T, xi)) if beyond else own
         T = np.asarray(T, dtype=float)
         least = np.where(self.modes[0].T < T, self.ground.acceleration(T, xi), 0.0)
         found: Array = np.maximum(self.filtered(T, xi), least)

@@ -42,6 +42,9 @@ MOST = 150
 TRIES = 12
 """Programmes in search of a collapse state of one configuration."""
 
+JAMS = 2.0
+"""Times the largest of alpha_0 and of the first multiplier above which the blocks jam: the curve is cut before."""
+
 SAME = 1e-6
 """Relative difference below which multipliers are the same."""
 
@@ -311,6 +314,9 @@ def follow_in_steps(sequence: Sequence, onset: float = np.inf) -> CapacityCurve:
                 end, reason = d[-1], "joints end" if q is None else "no state"
                 break
             continue
+        if not sequence.ties and after.multiplier > JAMS * (first if np.isinf(onset) else max(first, onset)):
+            end, reason = d[-1], "jams"
+            break
         at = sequence.controlled(after.q)
         if overshot:
             share = state.multiplier / (state.multiplier - after.multiplier)

@@ -54,6 +54,8 @@ class Spectrum:
 
     def acceleration(self, T: Any, xi: float = 5.0) -> Array:
         """Return S_e at the periods ``T`` (n,) [s], in m/s2."""
+        if isinstance(T, float):  # thousands of them: half of the time of a check, as arrays
+            return np.asarray(self.a_g * self.S * self._shape(T, self.eta(xi) * self.F0))
         T = np.asarray(T, dtype=float)
         top = self.eta(xi) * self.F0
         safe = np.maximum(T, 1e-12)
@@ -65,12 +67,23 @@ class Spectrum:
         found: Array = self.a_g * self.S * shape
         return found
 
+    def _shape(self, T: float, top: float) -> float:
+        """Return the acceleration at one period over that of the ground; ``top`` is its largest value."""
+        if T < self.T_B:
+            return 1.0 + T / self.T_B * (top - 1.0)
+        if T < self.T_C:
+            return top
+        return top * self.T_C / T if T < self.T_D else top * self.T_C * self.T_D / (T * T)
+
     def displacement(self, T: Any, xi: float = 5.0) -> Array:
         """Return S_De at the periods ``T`` (n,) [s], in m."""
-        T = np.asarray(T, dtype=float)
-        plain = self.acceleration(T, xi) * (T / (2.0 * math.pi)) ** 2
+        one = isinstance(T, float)
+        T = T if one else np.asarray(T, dtype=float)
+        plain: Array = self.acceleration(T, xi) * (T / (2.0 * math.pi)) ** 2
         ground = 0.025 * self.a_g * self.S * self.T_C * self.T_D
         top = self.F0 * self.eta(xi)
+        if one and self.T_E >= T:
+            return plain
         falling = ground * (top + (1.0 - top) * (T - self.T_E) / max(self.T_F - self.T_E, 1e-9))
         found: Array = np.select([self.T_E >= T, self.T_F >= T], [plain, falling], ground)
         return found

@@ -15,6 +15,7 @@ from fnmatch import fnmatchcase
 import numpy as np
 import scipy.sparse as sp
 
+from concio.analysis.seismic.ends_of_joints import Ends, ends_of_joints
 from concio.analysis.seismic.macro_blocks import Mechanics, mechanics_of
 from concio.arguments import closest
 from concio.contact.assembly import Assembly
@@ -23,8 +24,8 @@ from concio.model.model import Model
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.limits_of_work import COLLAPSE_WORK, LARGEST_SEARCH, UNASKED_WORK
 from concio.solvers.statics.associated_limit import LimitLoad, associated_limit
-from concio.solvers.statics.collapse_search import find_collapse_state
-from concio.solvers.statics.collapse_state import CollapseState
+from concio.solvers.statics.collapse_search import Tried, find_collapse_state
+from concio.solvers.statics.collapse_state import CollapseState, Motion, judged
 from concio.solvers.statics.existence import find_mechanism, statically_admissible
 from concio.verdict.not_standing import BY_A_MECHANISM, of_the_joints
 
@@ -165,6 +166,7 @@ class Mechanisms:
         whole = assembly.problem(dict.fromkeys(groups, 0.0))
         self.whole = replace(whole, laws=replace(whole.laws, tension=np.zeros(whole.pairs)))
         self.push = sign * (assembly.problem(dict.fromkeys(groups, 1.0)).f - whole.f)
+        self.ends = ends_of_joints(self.whole, assembly.pairs)
         self.stands: set[tuple[int, ...] | None] = set()
 
     def find(self, moving: Sequence[int] | None = None, *, quick: bool = False) -> Found:
@@ -184,10 +186,15 @@ class Mechanisms:
             The bodies do not stand under their own weight.
         """
         chosen = None if moving is None else tuple(moving)
+        part = self._part(chosen)
+        self._check_stands(part.problem, chosen)
+        return replace(self._found(part, quick=quick), moving=chosen)
+
+    def _part(self, chosen: tuple[int, ...] | None) -> _Part:
+        """Return the bodies that may move, with the pairs at the ends of their joints."""
         columns, rows, problem = _held(self.whole, chosen)
-        self._check_stands(problem, chosen)
-        found = self._found(columns, rows, problem, quick=quick)
-        return replace(found, moving=chosen)
+        ends = self.ends.of(rows)
+        return _Part(columns, rows, problem, ends, _of_pairs(problem, np.flatnonzero(ends.needed)), self.push[columns])
 
     def loaded(self, moving: Sequence[int] | None = None) -> tuple[ContactProblem, Array]:
         """Return the problem in which only some bodies may move, under the constant loads, and the push on them."""
@@ -204,79 +211,130 @@ class Mechanisms:
             raise NoEquilibriumError(of_the_joints(msg, self.assembly.detection), hint=hint)
         self.stands.add(moving)
 
-    def _found(self, columns: Array, rows: Array, problem: ContactProblem, *, quick: bool) -> Found:
-        push = self.push[columns]
-        bound = associated_limit(problem, push)
+    def _found(self, part: _Part, *, quick: bool) -> Found:
+        bound = associated_limit(part.problem, part.push)
         if bound.mechanism is None or not np.isfinite(bound.multiplier):
-            return self._locked(columns, rows, problem, bound)
-        velocity, forces = self._spread(columns, rows, bound.mechanism.velocity, bound.normal_force)
+            return self._locked(part, bound)
+        velocity, forces = self._spread(part, bound.mechanism.velocity, bound.normal_force, bound.friction_force)
         mechanics = mechanics_of(self.assembly, velocity, forces)
         if not mechanics.slides:
             return Found(bound, bound.multiplier, "no sliding", velocity, forces, mechanics)
-        state = self._state(problem, push, bound, rows, quick=quick)
+        state = self._state(part, bound, quick=quick)
         if state is None:
             return Found(bound, bound.multiplier, "associated", velocity, forces, mechanics)
-        return self._of_state(columns, rows, bound, state)
+        return self._of_state(part, bound, state)
 
-    def _state(
-        self, problem: ContactProblem, push: Array, bound: LimitLoad, rows: Array, *, quick: bool
-    ) -> CollapseState | None:
+    def _state(self, part: _Part, bound: LimitLoad, *, quick: bool) -> CollapseState | None:
         """Return the least collapse state met from several starts; None where none is."""
+        problem, push = part.problem, part.push
         if problem.pairs > LARGEST_SEARCH:
             return None
-        beds = np.abs(self.assembly.pairs.normal[rows][:, -1]) > BED
-        found = _quickly(problem, push, bound, beds)
+        beds = np.abs(self.assembly.pairs.normal[part.rows[part.ends.needed]][:, -1]) > BED
+        tried: Tried = {}
+        found = _quickly(problem, push, bound, beds, tried, alone=quick)
         if not quick:
             work = COLLAPSE_WORK if problem.dim == 2 else UNASKED_WORK
             starts = None if problem.dim == 2 else 1
-            found.append(find_collapse_state(problem, push, starts=starts, work=work, bound=bound).state)
+            found.append(find_collapse_state(problem, push, starts=starts, work=work, bound=bound, tried=tried).state)
         return min((s for s in found if s is not None), key=lambda s: s.multiplier, default=None)
 
-    def _of_state(self, columns: Array, rows: Array, bound: LimitLoad, state: CollapseState) -> Found:
-        velocity, forces = self._spread(columns, rows, state.velocity, state.normal_force)
-        made = mechanics_of(self.assembly, velocity, forces)
-        return Found(bound, state.multiplier, "Coulomb", velocity, forces, made, state=state)
+    def _of_state(self, part: _Part, bound: LimitLoad, state: CollapseState) -> Found:
+        state = part.with_every_pair(state)
+        every, forces = self._everywhere(part, state.velocity, state.normal_force)
+        made = mechanics_of(self.assembly, every, forces)
+        return Found(bound, state.multiplier, "Coulomb", every, forces, made, state=state)
 
-    def _locked(self, columns: Array, rows: Array, problem: ContactProblem, bound: LimitLoad) -> Found:
+    def _locked(self, part: _Part, bound: LimitLoad) -> Found:
         """Return what happens to a push of which the associated programme carries any multiple.
 
         Without friction that is the last word: no motion that joints allow gains work, with whatever friction. With
         friction it is none, for Coulomb's joints do not open as they slide; collapse states are looked for then.
         """
-        zero = np.zeros(problem.pairs)
+        problem, zero = part.problem, np.zeros(part.problem.pairs)
         bare = replace(problem, laws=replace(problem.laws, friction=zero, dilatancy=zero, cohesion=zero))
         nothing = Found(bound, np.inf, "no sliding", np.zeros(self.assembly.disc.unknowns), np.zeros(self.whole.pairs),
                         None)  # fmt: skip
-        if np.isnan(bound.multiplier) or associated_limit(bare, self.push[columns]).locked:
+        if np.isnan(bound.multiplier) or associated_limit(bare, part.push).locked:
             return nothing
         begin = replace(bound, multiplier=LARGEST)
-        state = find_collapse_state(problem, self.push[columns], bound=begin).state
+        state = find_collapse_state(problem, part.push, bound=begin).state
         if state is None:
             return replace(nothing, needs_friction=True)
-        return self._of_state(columns, rows, bound, state)
+        return self._of_state(part, bound, state)
 
-    def _spread(self, columns: Array, rows: Array, v: Array, t_n: Array) -> tuple[Array, Array]:
+    def _spread(self, part: _Part, v: Array, t_n: Array, t_t: Array) -> tuple[Array, Array]:
+        """Return velocity (N_all,) and normal forces (m,) of the whole, from those at the ends of joints of a part."""
+        return self._everywhere(part, v, part.spread(t_n, t_t)[0])
+
+    def _everywhere(self, part: _Part, v: Array, t_n: Array) -> tuple[Array, Array]:
         """Return the velocity (N_all,) and the normal forces (m,) of the whole that those of a part are."""
         every, forces = np.zeros(self.whole.unknowns), np.zeros(self.whole.pairs)
-        every[columns], forces[rows] = v, t_n
+        every[part.columns], forces[part.rows] = v, t_n
         return self.assembly.supported.T @ every, forces
 
 
-def _quickly(problem: ContactProblem, push: Array, bound: LimitLoad, beds: Array) -> list[CollapseState | None]:
+@dataclass(frozen=True, eq=False)
+class _Part:
+    """Bodies that may move: their unknowns and pairs, the problem of all pairs, and that of those at ends of joints."""
+
+    columns: Array
+    rows: Array
+    whole: ContactProblem
+    ends: Ends
+    problem: ContactProblem
+    push: Array
+
+    def spread(self, t_n: Array, t_t: Array) -> tuple[Array, Array]:
+        """Return forces of all pairs, from those at the ends of joints."""
+        every, across = np.zeros(self.whole.pairs), np.zeros((self.whole.pairs, t_t.shape[1]))
+        every[self.ends.needed], across[self.ends.needed] = t_n, t_t
+        return self.ends.spread(every, across)
+
+    def with_every_pair(self, state: CollapseState) -> CollapseState:
+        """Return a state with the forces of all pairs, its residuals those of the whole problem."""
+        if self.ends.needed.all():
+            return state
+        t_n, t_t = self.spread(state.normal_force, state.friction_force)
+        motion = Motion.of(self.whole, state.velocity)
+        found = judged(self.whole, self.push, motion, state.multiplier, t_n, t_t, state.iterations)
+        if found.certified:
+            return found
+        t_n, t_t = np.zeros_like(t_n), np.zeros_like(t_t)  # as it was found: none between the ends
+        t_n[self.ends.needed], t_t[self.ends.needed] = state.normal_force, state.friction_force
+        return judged(self.whole, self.push, motion, state.multiplier, t_n, t_t, state.iterations)
+
+
+def _quickly(
+    problem: ContactProblem, push: Array, bound: LimitLoad, beds: Array, tried: Tried, *, alone: bool
+) -> list[CollapseState | None]:
     """Return collapse states met with few programmes, from forces that hold up the weight alone.
 
     Once as they are, and once without those of vertical joints, ``beds`` (m,) being the others: courses of dry blocks
     press on each other, not sideways, and what only the friction of vertical joints holds is met from there. In the
-    plane also from the forces of the associated limit.
+    plane also from the forces of the associated limit, unless a whole search, which begins there, comes after.
     """
     dead = statically_admissible(problem)
     starts = [dead.normal_force, np.where(beds, dead.normal_force, 0.0)] if dead.exists else []
-    if problem.dim == 2 or not starts:
+    if (problem.dim == 2 and alone) or not starts:
         starts.append(bound.normal_force)
     return [
-        find_collapse_state(problem, push, starts=1, iterations=FEW, bound=replace(bound, normal_force=forces)).state
+        find_collapse_state(
+            problem, push, starts=1, iterations=FEW, bound=replace(bound, normal_force=forces), tried=tried
+        ).state
         for forces in starts
     ]
+
+
+def _of_pairs(problem: ContactProblem, chosen: Array) -> ContactProblem:
+    """Return the problem with some of its pairs alone."""
+    if chosen.size == problem.pairs:
+        return problem
+    s = problem.dim - 1
+    every = (chosen[:, None] * s + np.arange(s)).ravel()
+    return replace(
+        problem, C_n=sp.csr_array(problem.C_n[chosen]), C_t=sp.csr_array(problem.C_t[every]), gap=problem.gap[chosen],
+        laws=problem.laws[chosen], slip_origin=problem.slip_origin[chosen], area=problem.area[chosen],
+    )  # fmt: skip
 
 
 def _held(problem: ContactProblem, moving: Sequence[int] | None) -> tuple[Array, Array, ContactProblem]:

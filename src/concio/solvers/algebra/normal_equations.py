@@ -6,6 +6,9 @@ matrix of rigid blocks on springs of stiffness Theta, its graph that of the stru
 
 from __future__ import annotations
 
+from collections import OrderedDict
+from dataclasses import dataclass
+from hashlib import blake2b
 from typing import Any
 
 import numpy as np
@@ -21,6 +24,9 @@ GROUP = 3
 REPEATS = 4
 """Largest number of times a point is rebalanced."""
 
+KEPT = 4
+"""Matrices whose order and products are kept: programmes that follow each other differ in their bounds alone."""
+
 
 class NormalEquations:
     """Factorises A Theta A' for changing positive Theta; the rows of A are put in a fill-reducing order once.
@@ -31,11 +37,12 @@ class NormalEquations:
     """
 
     def __init__(self, A: sp.csc_array) -> None:
-        pattern = sp.csr_array(abs(A) @ abs(A).T)
-        self.order, self.ordering = nested_dissection(pattern, GROUP)
-        self.A = sp.csr_array(sp.csr_array(A)[self.order])
-        self.At = sp.csr_array(self.A.T)
-        self.matrix, self.weights, self.diagonal = _products(sp.csc_array(self.A))
+        made = _ordered(A)
+        self.order, self.ordering, self.A, self.At = made.order, made.ordering, made.A, made.At
+        self.weights, self.diagonal = made.weights, made.diagonal
+        pattern = made.matrix
+        self.matrix = sp.csc_matrix((pattern.data, pattern.indices, pattern.indptr), shape=pattern.shape)
+        self.matrix.has_canonical_format = True
 
     def factorise(self, theta: Array) -> None:
         """Factorise A diag(theta) A', its diagonal lifted by rounding; rows of nothing get a one."""
@@ -53,6 +60,40 @@ class NormalEquations:
         x = self.lu.solve(g)
         refined: Array = x + self.lu.solve(g - self.matrix @ x)
         return refined
+
+
+@dataclass(frozen=True, eq=False)
+class _Ordered:
+    """What does not depend on Theta: see :class:`NormalEquations`."""
+
+    order: Array
+    ordering: str
+    A: sp.csr_array
+    At: sp.csr_array
+    matrix: sp.csc_matrix
+    weights: sp.csr_array
+    diagonal: Array
+
+
+_RECENT: OrderedDict[bytes, _Ordered] = OrderedDict()
+
+
+def _ordered(A: sp.csc_array) -> _Ordered:
+    """Return the order and the products of a matrix, those of the last few as they were made."""
+    digest = blake2b(repr(A.shape).encode())
+    for part in (A.indptr, A.indices, A.data):
+        digest.update(np.ascontiguousarray(part).view(np.uint8).data)
+    key = digest.digest()
+    made = _RECENT.get(key)
+    if made is None:
+        order, ordering = nested_dissection(sp.csr_array(abs(A) @ abs(A).T), GROUP)
+        mine = sp.csr_array(sp.csr_array(A)[order])
+        matrix, weights, diagonal = _products(sp.csc_array(mine))
+        made = _Ordered(order, ordering, mine, sp.csr_array(mine.T), matrix, weights, diagonal)
+    _RECENT[key] = made
+    while len(_RECENT) > KEPT:
+        _RECENT.popitem(last=False)
+    return made
 
 
 def _products(A: sp.csc_array) -> tuple[sp.csc_matrix, sp.csr_array, Array]:

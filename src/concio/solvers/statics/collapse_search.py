@@ -48,6 +48,9 @@ SETTLED = 5e-3
 that finds no forces for a motion costs twice the one that found the motion. Where that leaves no state at all, the
 motions passed over are tried from the last back to the first."""
 
+Tried = dict[tuple[int, bytes], CollapseState | None]
+"""Motions of a connected part that were tried, by what they ask of its pairs, with the states found."""
+
 AVERAGE, SEED = 0.5, 0
 """Weight of the new forces in the strength; of the random starts: a problem is always searched in the same way."""
 
@@ -98,6 +101,7 @@ def find_collapse_state(
     work: int = COLLAPSE_WORK,
     bound: LimitLoad | None = None,
     progress: ProgressCallback | None = None,
+    tried: Tried | None = None,
 ) -> CollapseSearch:
     """Search Coulomb collapse states, of each connected part by itself.
 
@@ -116,17 +120,21 @@ def find_collapse_state(
     bound : LimitLoad, optional
         Associated limit of the problem, where it is known already.
     progress : callable, optional
+    tried : dict, optional
+        Motions that earlier searches of this problem and load tried, with the states found; those of this one are
+        added.
     """
+    tried = {} if tried is None else tried
     asked = _Asked(starts, iterations, work, progress)
     parts = [part for part in parts_of(problem) if part.unknowns.size]
     if len(parts) <= 1:
-        return _of_one(problem, live, bound, asked)
+        return _of_one(problem, live, bound, asked, tried)
     found: list[CollapseSearch] = []
     parts.sort(key=lambda part: not live[part.unknowns].any())  # those without a load of their own only stand
-    for part in parts:
+    for k, part in enumerate(parts):
         if not live[part.unknowns].any() or (found and found[-1].cancelled):
             break
-        found.append(_of_one(part.problem, live[part.unknowns], None, asked))
+        found.append(_of_one(part.problem, live[part.unknowns], None, asked, tried, k))
     return _of_all(problem, live, parts, found)
 
 
@@ -177,11 +185,13 @@ def _whole(
     return replace(state, normal_force=t_n, friction_force=t_t, velocity=velocity, statics=worst)
 
 
-def _of_one(problem: ContactProblem, live: Array, bound: LimitLoad | None, asked: _Asked) -> CollapseSearch:
+def _of_one(
+    problem: ContactProblem, live: Array, bound: LimitLoad | None, asked: _Asked, tried: Tried, number: int = 0
+) -> CollapseSearch:
     """Search the collapse states of a connected part."""
     starts, iterations, work = asked.starts, asked.iterations, asked.work
     top = associated_limit(problem, live) if bound is None else bound
-    search = _Search(problem, live, asked.progress)
+    search = _Search(problem, live, asked.progress, tried, number)
     search.most = max(top.multiplier, top.upper)
     if np.isnan(top.multiplier):
         return search.outcome(0)
@@ -200,8 +210,11 @@ def _of_one(problem: ContactProblem, live: Array, bound: LimitLoad | None, asked
 class _Search:
     """Iterates from one start after another and keeps what was met; no motion is certified twice."""
 
-    def __init__(self, problem: ContactProblem, live: Array, progress: ProgressCallback | None) -> None:
+    def __init__(
+        self, problem: ContactProblem, live: Array, progress: ProgressCallback | None, tried: Tried, number: int
+    ) -> None:
         self.problem, self.live, self.progress = problem, live, progress
+        self.tried, self.number = tried, number
         self.states: list[CollapseState] = []
         self.asked: set[bytes] = set()
         self.programmes = 0
@@ -254,7 +267,10 @@ class _Search:
             return
         self.asked.add(motion.key)
         self.programmes += 1
-        state = certify_collapse(self.problem, self.live, velocity, self.programmes, self.most)
+        key = self.number, motion.key
+        if key not in self.tried:
+            self.tried[key] = certify_collapse(self.problem, self.live, velocity, self.programmes, self.most)
+        state = self.tried[key]
         if state is not None and state.multiplier >= 0.0:  # the other way round is another load
             self.states.append(state)
 

@@ -140,15 +140,21 @@ def certify_collapse(
     found = _programmed(problem, motion, live, most) if problem.dim == 2 else forces_in_space(problem, motion, live)
     if found is None:
         return None
-    multiplier, t_n, t_t = found
+    state = judged(problem, live, motion, *found, iterations)
+    return state if state.certified and float(live @ motion.velocity) > 0 else None
+
+
+def judged(
+    problem: ContactProblem, live: Array, motion: Motion, multiplier: float, t_n: Array, t_t: Array, iterations: int
+) -> CollapseState:
+    """Return forces t_n (m,), t_t (m, d-1) [kN] and a motion as a state, with the residuals of both."""
     load = problem.f + multiplier * live
     force = max(float(np.abs(problem.f).sum()), float(np.abs(live).sum()))
     size = float(np.abs(load).sum()) or force  # a live load may undo the dead one
     wrong = float(motion.flow_error(problem, t_n, t_t).max(initial=0.0)) / size
     flow = max(wrong, motion.penetration())
     statics = static_residual(problem, load, t_n, t_t)
-    state = CollapseState(multiplier, t_n, t_t, motion.velocity, statics, flow, iterations)
-    return state if state.certified and float(live @ motion.velocity) > 0 else None
+    return CollapseState(multiplier, t_n, t_t, motion.velocity, statics, flow, iterations)
 
 
 def _programmed(
