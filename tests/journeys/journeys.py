@@ -878,6 +878,38 @@ def test_a_picture_becomes_blocks_that_are_corrected_and_asked(page: Browser, tm
         assert "In equilibrium" in said
 
 
+def test_the_way_along_the_joints_is_seen_while_the_pointer_moves(page: Browser, tmp_path: Path) -> None:
+    wall = concio.wall(block_size=(0.25, 0.125), length=1.0, height=0.5, block="rigid")
+    imsave(tmp_path / "wall.png", rendered(wall, contrast=0.2, seed=2).grey, cmap="gray", vmin=0.0, vmax=1.0)
+    with window(tmp_path) as client:
+        client.call("open", name="wall.png")
+        client.do({"do": "set", "path": ["record", "picture", "points"], "value": [[0, 10], [300, 10]]},
+                  {"do": "set", "path": ["record", "picture", "distance"], "value": 1.0})  # fmt: skip
+        client.call("bye")
+        page.go(client.server.address)
+        page.until("document.querySelector('[data-photo=outline]') && document.querySelector('#picture image')")
+        page.until("document.querySelector('#busy').hidden")
+        page.click("[data-photo=outline]")
+        corners = [(0.252, 0.128), (0.497, 0.121), (0.503, 0.253), (0.247, 0.246)]
+        page.click_at(*page.where(*corners[0]))
+        for x in (0.3, 0.4, 0.497):
+            page.mouse("mouseMoved", *page.where(x, 0.121))
+        page.until("document.querySelector('#picture .wire:not(.old)')", "the way to where the pointer stands")
+        drawn = page.js("document.querySelector('#picture .wire').getAttribute('points')")
+        way = [tuple(map(float, p.split(","))) for p in drawn.split()]
+        assert max(abs(-y - 0.125) for x, y in way if 0.27 < x < 0.48) < 0.007
+        for at in corners[1:]:
+            page.click_at(*page.where(*at))
+        page.until("document.querySelectorAll('#picture .wire:not(.old)').length >= 3", "the ways between clicks stay")
+        page.click_at(*page.where(*corners[0]))
+        page.until("document.querySelectorAll('#picture .traced').length === 1")
+        assert page.js("document.querySelector('#picture .wire')") is None
+        page.click("#take-stones")
+        page.until(f"{SETTLED} && window.concio.view.shown.bodies.length === 2")
+        stone = next(b for b in concio.loads(text_of(client), folder=tmp_path).bodies if b.kind != "fixed")
+        assert stone.volume == pytest.approx(0.25 * 0.125, rel=0.15)
+
+
 def ply_of(body: concio.Polyhedron) -> str:
     """Return a body as PLY."""
     head = ["ply", "format ascii 1.0", f"element vertex {len(body.vertices)}",

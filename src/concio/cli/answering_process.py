@@ -21,6 +21,7 @@ MOST_NUMBERS = 60
 LATER = {
     "picture": ("page_picture", "picture"), "drag": ("drag", "dragged"), "layers": ("opened_drawing", "layers"),
     "acts": ("acts", "acts"), "underlay": ("traced_picture", "underlay"), "trace": ("traced_picture", "traced"),
+    "wire": ("traced_picture", "wired"),
 }  # fmt: skip
 """Handlers by kind of request: module of the window and function. Each is loaded when first asked: a picture first."""
 

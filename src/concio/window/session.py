@@ -64,7 +64,7 @@ class Session:
             "picture": self.picture, "drag": self.drag, "ask": self.ask, "cancel": self.cancel, "result": self.result,
             "layers": self.layers, "export": self.export, "bye": self.bye, "take": self.take,
             "answers": self.answers, "film": self.film, "acts": self.acts,
-            "underlay": self.underlay, "trace": self.trace,
+            "underlay": self.underlay, "trace": self.trace, "wire": self.wire,
         }  # fmt: skip
         if file is not None:
             self.document = Document(file)
@@ -307,6 +307,12 @@ class Session:
         asked = {key: told.get(key) for key in ("method", "unit", "joint", "clicks")}
         job = self.look.ask(self._request("trace", self._there(), **asked))
         job.over.wait(300.0)
+        return {"state": job.state, job.state: job.answer}
+
+    def wire(self, told: Mapping[str, Any]) -> Answer:
+        """Return the way along the joints of the picture from one click to where the pointer is; newer requests win."""
+        job = self.look.ask(self._request("wire", self._there(), **{key: told.get(key) for key in ("a", "b", "joint")}))
+        job.over.wait(20.0)
         return {"state": job.state, job.state: job.answer}
 
     def ask(self, told: Mapping[str, Any]) -> Answer:

@@ -14,7 +14,7 @@ import numpy as np
 from concio.errors import InputError
 from concio.model.picture.courses import trace_courses
 from concio.model.picture.photo import Photo, read_photo
-from concio.model.picture.regions import trace_outlines, trace_regions
+from concio.model.picture.regions import trace_outlines, trace_regions, wire
 from concio.model.picture.tracing import Tracing
 from concio.window.folder import check_files
 from concio.window.worker import Tell
@@ -23,6 +23,9 @@ MOST_PIXELS = 1600
 """Longer side of the picture that the page shows."""
 MOST_STONES = 2000
 MOST_DOUBTS = 60
+MOST_WIRE = 300_000
+"""Pixels around two clicks between which the way along the joints is shown at once."""
+_LAST: dict[str, tuple[Photo, bool]] = {}
 UNKNOWN = 3.0
 """Width that a picture is shown with before its scale is known [m]."""
 
@@ -42,7 +45,17 @@ def photo_of(request: Mapping[str, Any]) -> tuple[Photo, bool]:
         msg = "the model names no picture"
         raise InputError(msg, where="[record.picture]", hint="drop a PNG, JPEG or TIFF file on the page")
     check_files({"file": table["file"]}, Path(request["base"]), Path(request["folder"]))
-    photo = read_photo(Path(request["base"]) / table["file"])
+    file = Path(request["base"]) / table["file"]
+    changed = file.stat().st_mtime_ns if file.is_file() else 0
+    key = f"{file} {changed} {table!r}"
+    if key not in _LAST:  # many requests of one picture follow each other while a hand moves
+        found = _scaled(read_photo(file), table)
+        _LAST.clear()
+        _LAST[key] = found
+    return _LAST[key]
+
+
+def _scaled(photo: Photo, table: Mapping[str, Any]) -> tuple[Photo, bool]:
     corners, points = table.get("corners"), table.get("points")
     if corners is not None:
         width, height = _numbers(table.get("size"), (2,))
@@ -119,6 +132,31 @@ def traced(request: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
             for j in found.joints[:MOST_DOUBTS]
         ],
     }  # fmt: skip
+
+
+def wired(request: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
+    """Return the way along the joints between two points of the picture.
+
+    Parameters
+    ----------
+    request : mapping
+        ``a`` and ``b``, points [m]; ``joint``, rough width of the joints [m].
+    tell : callable
+        Not used.
+
+    Returns
+    -------
+    dict
+        ``way``, points [m]; None where the points are too far apart for a way at once, or the picture has no scale.
+    """
+    photo, known = photo_of(request)
+    a, b = (_numbers(request[key], (2,)) for key in "ab")
+    (x0, y0), (x1, y1) = photo.pixels(np.array([a, b]))
+    far = float(np.hypot(x1 - x0, y1 - y0))
+    if not known or (abs(x1 - x0) + far) * (abs(y1 - y0) + far) > MOST_WIRE:
+        return {"way": None}
+    found = wire(photo, a.tolist(), b.tolist(), joint=request.get("joint") or None)
+    return {"way": np.round(found, 5).tolist()}
 
 
 def _traced(photo: Photo, request: Mapping[str, Any]) -> Tracing:

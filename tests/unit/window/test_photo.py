@@ -13,9 +13,10 @@ from PIL import Image
 
 import concio
 from concio.errors import InputError
+from concio.trace import read_photo, wire
 from concio.window.commands import patch_of
 from concio.window.starting import model_text
-from concio.window.traced_picture import traced, underlay
+from concio.window.traced_picture import traced, underlay, wired
 from rendered import rendered
 
 
@@ -57,6 +58,36 @@ def test_a_picture_lies_where_its_scale_puts_it(folder: Path, scaled: str) -> No
     assert underlay(request(folder, flat), lambda *_: None)["flat"]
     with pytest.raises(InputError, match="no scale yet"):
         traced(request(folder, text, method="courses", unit=[0.25, 0.125]), lambda *_: None)
+
+
+def test_the_way_to_the_pointer_is_that_of_the_outline(folder: Path, scaled: str) -> None:
+    """From below the bed joint at 0.25 m to above it: the way goes along the joint, a straight line would not."""
+    a, b = [0.1, 0.235], [0.6, 0.262]
+    found = wired(request(folder, scaled, a=a, b=b, joint=0.01), lambda *_: None)["way"]
+    photo = read_photo(folder / "wall.png").scaled((0, 10), (300, 10), 1.0)
+    assert np.array(found) == pytest.approx(wire(photo, a, b, joint=0.01), abs=1e-5)
+    middle = [y for x, y in found if 0.2 < x < 0.5]
+    assert max(abs(y - 0.25) for y in middle) < 0.007
+
+
+def test_a_way_that_takes_long_is_not_shown_at_once(folder: Path, scaled: str) -> None:
+    large = done(scaled, do="set", path=["record", "picture", "file"], value="large.png")
+    Image.new("L", (3000, 2000)).save(folder / "large.png")
+    assert wired(request(folder, large, a=[0, 0], b=[9.0, 6.0]), lambda *_: None) == {"way": None}
+    unscaled = model_text(folder / "wall.png")
+    assert unscaled is not None
+    assert wired(request(folder, unscaled, a=[0, 0], b=[0.1, 0.1]), lambda *_: None) == {"way": None}
+    with pytest.raises(InputError):
+        wired(request(folder, scaled, a=[0, 0], b=["x", 1]), lambda *_: None)
+
+
+def test_a_picture_that_changes_on_the_disk_is_read_again(folder: Path, scaled: str) -> None:
+    other = done(scaled, do="set", path=["record", "picture", "file"], value="other.png")
+    sizes = []
+    for size in ((300, 100), (600, 100)):
+        Image.new("L", size).save(folder / "other.png")
+        sizes.append(underlay(request(folder, other), lambda *_: None)["columns"])
+    assert sizes == [300, 600]
 
 
 def test_traced_stones_become_blocks_that_stand(folder: Path, scaled: str) -> None:

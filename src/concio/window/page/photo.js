@@ -23,6 +23,8 @@ drawings.under.push({
 drawings.over.push({
   draw: (svg, u) => {
     if (found) for (const ring of found.stones) node("path", { class: "traced", d: d(ring) }, svg);
+    if (mode === "outline" && ways.length) for (const way of ways) node("polyline", { class: "wire", points: way.map(([x, y]) => `${x},${-y}`).join(" ") }, svg);
+    if (mode === "outline" && ahead) node("polyline", { class: ahead.to === hover ? "wire" : "wire old", points: ahead.way.map(([x, y]) => `${x},${-y}`).join(" ") }, svg);
     const own = clicks.concat(hover && clicks.length ? [hover] : []);
     if (own.length) node("polyline", { class: "ghost", points: own.map(([x, y]) => `${x},${-y}`).join(" ") }, svg);
     clicks.forEach(([x, y]) => node("circle", { class: "ghost", cx: x, cy: -y, r: 5 * u }, svg));
@@ -53,19 +55,46 @@ const pixel = ([x, y]) => { const [x0, , x1, y1] = under.box, s = under.columns 
 const set = (key, value) => ({ do: "set", path: ["record", "picture", key], value });
 const without = (...keys) => keys.filter((k) => table().some((v) => v.path[2] === k)).map((k) => ({ do: "remove", path: ["record", "picture", k] }));
 
-function begin(name, pane) { mode = mode === name ? "" : name; clicks = []; hover = null; lend(mode ? TOOLS[mode] : null); draw(); photoPane(pane); }
-let shown = null;
+function begin(name, pane) { mode = mode === name ? "" : name; clear(); lend(mode ? TOOLS[mode] : null); draw(); photoPane(pane); }
+let shown = null, ways = [], ahead = null, flying = false;
+function clear() { clicks = []; hover = null; ways = []; ahead = null; }
+
+/* the way along the joints, from the last click to the pointer while it moves, and between clicks for good */
+let line = Promise.resolve();
+function way(a, b) { /* one after the other: the newest request would end the one before */
+  line = line.catch(() => null).then(async () => {
+    let said;
+    do said = await call("wire", { a, b, joint: Number(form.joint) || null }); while (said.state === "cancelled");
+    return said.state === "done" ? said.done.way : null;
+  });
+  return line;
+}
+async function fixed(a, b) {
+  const mine = ways, found = (ahead?.to === b && ahead.way) || (await way(a, b).catch(() => null));
+  if (found && mine === ways) { ways.push(found); draw(); }
+}
+async function preview() {
+  if (flying || !clicks.length || !hover) return;
+  const from = clicks.at(-1), to = hover;
+  flying = true;
+  const found = await way(from, to).catch(() => null);
+  flying = false;
+  if (mode !== "outline" || from !== clicks.at(-1)) return;
+  ahead = found ? { to, way: found } : null;
+  draw();
+  if (to !== hover) preview();
+}
 const TOOLS = {
   scale: { click: (at) => { clicks.push(at); if (clicks.length === 2) done("scale"); draw(); } },
   flat: { click: (at) => { clicks.push(at); if (clicks.length === 4) done("flat"); draw(); } },
   cut: { click: (at) => { clicks.push(at); if (clicks.length === 2) done("cut"); draw(); }, hover: (at) => { hover = at; draw(); } },
-  outline: { click: (at) => { const near = clicks.length > 2 && Math.hypot(at[0] - clicks[0][0], at[1] - clicks[0][1]) < 10 * unit(); if (near) done("outline"); else clicks.push(at); draw(); }, hover: (at) => { hover = at; draw(); } },
+  outline: { click: (at) => { const near = clicks.length > 2 && Math.hypot(at[0] - clicks[0][0], at[1] - clicks[0][1]) < 10 * unit(); if (near) return done("outline"); if (clicks.length) fixed(clicks.at(-1), at); clicks.push(at); ahead = null; draw(); }, hover: (at) => { hover = at; draw(); preview(); } },
   corner: { down: (at) => { const near = corners().map((p) => [Math.hypot(p[0] - at[0], p[1] - at[1]), p]).sort((a, b) => a[0] - b[0])[0]; if (!near || near[0] > 10 * unit()) return false; clicks = [near[1]]; return true; },
     move: (at) => { hover = at; draw(); }, up: (at) => { const from = clicks[0]; clicks = []; hover = null; send([{ do: "corner", from, to: at.map((v) => Math.round(v * 1e5) / 1e5) }]); } },
 };
 async function done(what) {
   const own = clicks;
-  clicks = []; hover = null; mode = ""; lend(null);
+  clear(); mode = ""; lend(null);
   if (what === "scale") {
     const distance = Number(form.distance);
     if (!(distance > 0)) return say(t("photo_distance"));
