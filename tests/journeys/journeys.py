@@ -878,6 +878,36 @@ def test_a_picture_becomes_blocks_that_are_corrected_and_asked(page: Browser, tm
         assert "In equilibrium" in said
 
 
+def test_a_picture_without_stones_is_no_fault_and_a_fault_beside_it_is_told(page: Browser, tmp_path: Path) -> None:
+    shutil.copy(ROOT / "examples" / "bricks.png", tmp_path)
+    with window(tmp_path) as client:
+        client.call("open", name="bricks.png")
+        client.call("bye")
+        page.go(client.server.address)
+        page.until("document.querySelector('[data-photo=flat]') && document.querySelector('#picture image')")
+        page.until("document.querySelector('#untraced')")
+        assert page.js("document.querySelector('#fault').textContent") == ""
+        assert page.js(AUDIT) == []
+        page.click("#tab-ask")
+        page.until("/no stones yet/.test(document.querySelector('#acts').textContent)")
+        assert page.js("document.querySelector('#run').disabled")
+        for right, wrong, said in (
+            ("thickness = 1.0", "thickness = ", "line 8"),
+            ("friction = 0.6", "frictio = 0.6", "frictio"),
+        ):
+            page.click("#tab-text")
+            value(page, "#pane-text textarea", text_of(client).replace(right, wrong))
+            page.click("#pane-text button.main")
+            page.until(f"/{said}/.test(document.querySelector('#fault').textContent)")
+            assert page.js("document.querySelector('#fault').textContent").startswith("The model cannot be read")
+            assert page.js("document.querySelector('#picture image') !== null") or wrong == "thickness = "
+            page.js("document.querySelector('#undo').click()")
+            page.until("!document.querySelector('#fault').textContent && document.querySelector('#untraced')")
+        page.js("document.documentElement.lang === 'it' || document.querySelector('#language').click()")
+        assert english(page) == []
+        page.click("#language")
+
+
 def test_the_way_along_the_joints_is_seen_while_the_pointer_moves(page: Browser, tmp_path: Path) -> None:
     wall = concio.wall(block_size=(0.25, 0.125), length=1.0, height=0.5, block="rigid")
     imsave(tmp_path / "wall.png", rendered(wall, contrast=0.2, seed=2).grey, cmap="gray", vmin=0.0, vmax=1.0)

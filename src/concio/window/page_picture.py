@@ -6,13 +6,16 @@ writes no sentence about a structure itself.
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
+from concio.errors import InputError
 from concio.model.body import Body
 from concio.model.described import law_words, material_words, tie_words
+from concio.model.file.build import NO_BLOCKS
 from concio.model.model import Load, Model
 from concio.model.polyhedron import Polyhedron
 from concio.plot.model_figure import load_arrows
@@ -26,6 +29,13 @@ UNKNOWN: dict[str, Any] = {
 """What a picture of the geometry alone does not know."""
 
 
+UNTRACED: dict[str, Any] = {
+    **UNKNOWN, "early": False, "untraced": True, "dim": 2, "title": "", "bodies": [], "materials": {}, "laws": {},
+    "loads": [], "supports": [], "ties": [], "groups": [], "fixed": 0,
+}  # fmt: skip
+"""Picture of a model whose stones are still to be traced: that is no fault."""
+
+
 def picture(request: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
     """Return the picture of a model; ``tell`` gets its geometry before joints are sought and the model is assembled.
 
@@ -34,7 +44,13 @@ def picture(request: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
     ConcioError
         The text is not a model.
     """
-    data, model = read(request, fresh=True)
+    try:
+        data, model = read(request, fresh=True)
+    except InputError as error:
+        data = tomllib.loads(request["text"]) if error.what == NO_BLOCKS else {}
+        if "picture" not in data.get("record", {}):
+            raise
+        return {**UNTRACED, "tables": sorted(data)}
     shown: dict[str, Any] = {
         "dim": model.dim, "title": model.title, "tables": sorted(data), "bodies": _bodies(model),
         "materials": {n: material_words(m, model.report) for n, m in model.materials.items()},

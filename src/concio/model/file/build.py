@@ -32,6 +32,8 @@ from concio.model.polyhedron import Polyhedron
 from concio.model.stages import ControlPoint, Stage
 
 Laws = dict[str, JointLaw]
+NO_BLOCKS = "the file describes no blocks"
+"""What is said of a file that is sound so far, and has no blocks yet."""
 
 
 def build(data: FileTable, folder: Path, where: str, read: Callable[[str], Model]) -> Model:
@@ -59,7 +61,7 @@ def build(data: FileTable, folder: Path, where: str, read: Callable[[str], Model
         bodies = [*(start.bodies if start else ()), *_blocks_of_file(data, materials, folder)]
         bodies += [body_of(b, k, materials, data.analysis.thickness) for k, b in enumerate(data.blocks, 1)]
         if not bodies:
-            msg = "the file describes no blocks"
+            msg = NO_BLOCKS
             hint = "add [[blocks]], blocks_file = ..., or one of " + ", ".join(f"[{name}]" for name in GENERATORS)
             raise InputError(msg, hint=hint)
         parts = _parts(data, bodies, start, materials, laws)

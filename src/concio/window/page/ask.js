@@ -29,7 +29,7 @@ export function questionPane(pane) {
     ...choices,
     ...fields, el("section", {}, el("h2", {}, t("acts_on")), acts),
     el("p", { class: "quiet" }, `${t("all_options")} `, el("code", { lang: "en" }, `concio ${now.name} --help`)),
-    el("div", { class: "foot" }, el("button", { class: "main", id: "run", disabled: !view.shown || Boolean(view.shown.fault), onclick: run }, t("run_it"))),
+    el("div", { class: "foot" }, el("button", { class: "main", id: "run", disabled: !view.shown || Boolean(view.shown.fault || view.shown.untraced), onclick: run }, t("run_it"))),
   );
   showActs(acts, now);
 }
@@ -78,6 +78,7 @@ let newest = 0;
 async function showActs(place, question) {
   const shown = view.shown, mine = (newest += 1);
   if (!shown) return place.replaceChildren();
+  if (shown.untraced) return place.replaceChildren(el("p", {}, t("photo_untraced")));
   if (shown.fault) return place.replaceChildren(el("p", { lang: "en" }, shown.fault.what));
   try {
     const found = await call("acts", { question: question.name, options: options() });

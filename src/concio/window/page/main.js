@@ -90,7 +90,7 @@ async function picture() {
       const asked = doc.hash + doc.name, found = await call("picture", { wait: 5, early: !view.shown });
       if (!doc || found.hash + doc.name !== asked) continue;
       if (found.state === "early") { show(found.early); attention(); }
-      else if (found.state === "done") { pictured = asked; show(found.done); fault(null); }
+      else if (found.state === "done") { const first = found.done.untraced && !view.shown; pictured = asked; show(found.done); fault(null); if (first) go("photo"); }
       else if (found.state === "error") { pictured = asked; if ((hasPicture() || tabNames().includes("layers")) && !view.shown) { show(NOTHING); go(hasPicture() ? "photo" : "layers"); } fault(found.error); }
       else if (found.state === "cancelled") await new Promise((then) => setTimeout(then, 100));
       if (pictured === asked) { attention(); refresh(["ask", "build", "tables", "layers", "photo"]); tabs(); underlay(() => refresh(["photo"], true)); }
@@ -109,11 +109,12 @@ function attention() {
   const shown = view.shown, lines = shown ? shown.attention : [], own = begunWith(doc);
   $("attention-list").replaceChildren(
     ...(own.length ? [el("li", { id: "begun" }, `${t("begun_with")} ${own.join(", ")}.`, el("button", { onclick: () => go("data") }, t("data")), el("button", { onclick: () => send([{ do: "text", text: meant(doc.text) }]) }, t("begun_meant")))] : []),
+    ...(shown?.untraced ? [el("li", { id: "untraced" }, t("photo_untraced"), el("button", { onclick: () => go("photo") }, t("photo")))] : []),
     ...lines.map((line, k) => spoken("li", {}, line, shown.attention_italian[k])),
     ...(shown ? shown.findings : []).slice(0, 20).map((found) => el("li", { lang: "en" }, found.sentence, el("button", { onclick: () => { mark(found.at); } }, t("where")))),
     ...(shown && shown.notes.length ? [el("li", {}, el("details", {}, el("summary", {}, `${t("left_out")} (${shown.notes.length})`), ...shown.notes.map((line) => el("p", { lang: "en" }, line))))] : []),
   );
-  if (shown && shown !== NOTHING && !shown.early && !lines.length && !shown.findings.length && !shown.notes.length && !own.length) $("attention-list").append(el("li", { class: "quiet" }, t("no_attention")));
+  if (shown && shown !== NOTHING && !shown.early && !shown.untraced && !lines.length && !shown.findings.length && !shown.notes.length && !own.length) $("attention-list").append(el("li", { class: "quiet" }, t("no_attention")));
 }
 
 /* --- commands --- */
