@@ -27,6 +27,7 @@ from matplotlib.image import imsave
 import concio
 from browser import Browser, browser
 from concio.post.force_lines import force_chains
+from concio.verdict.limit_words import bound_lines
 from ifc_files import IfcText
 from rendered import rendered
 from windows import LATE, Client, window
@@ -243,6 +244,72 @@ def test_what_is_shown_while_a_load_is_dragged_is_certified_or_grey(page: Browse
     fresh = [said for kind, said in page.js("window.seen") if kind == "" and said]
     assert fresh
     assert all("no equilibrium beyond it" in said for said in fresh)
+
+
+WATCHED = """(() => { window.seen = []; const b = document.getElementById('bound');
+    const note = () => window.seen.push({ kind: b.className, said: b.hidden ? '' : b.textContent,
+        to: window.concio.dragging()?.to || null });
+    new MutationObserver(note).observe(b, { attributes: true, childList: true, subtree: true }); })()"""
+
+
+@pytest.mark.parametrize("model", ["arch", "facade"])
+def test_a_dragged_load_shows_its_own_bound_or_a_grey_one(page: Browser, tmp_path: Path, model: str) -> None:
+    """Whenever the bound is not grey, it is that of the place where the load is held at that moment."""
+    if model == "arch":
+        shutil.copy(TEMPLATES / "arch.toml", tmp_path)
+    else:
+        for suffix in ("dxf", "toml"):
+            shutil.copy(ROOT / "examples" / f"facade.{suffix}", tmp_path)
+    before = concio.load(tmp_path / f"{model}.toml")
+    tops = [p for b in before.free_bodies for p in b.rings[0]]
+    highest = max(p[1] for p in tops)
+    width = max(p[0] for p in tops if p[1] > highest - 1e-3)
+    way = [(-1.5 + 0.2 * k, 1.75) for k in range(8)] if model == "arch" else [
+        (0.2 + (width - 0.4) * k / 7, highest + 0.02) for k in range(8)
+    ]  # fmt: skip
+    with window(tmp_path, tmp_path / f"{model}.toml") as client:
+        opened(page, client)
+        page.until("window.concio.view.shown && !window.concio.view.shown.early")
+        page.click("[data-tool=load]")
+        page.click_at(*page.where(way[0][0], way[0][1] - (0.0 if model == "facade" else 0.55)))
+        page.until("document.querySelector('#pane-build [name=body]').value")
+        value(page, "#pane-build [name=value]", "0, -5" if model == "arch" else "5, -1")
+        value(page, "#pane-build [name=group]", "moved")
+        page.click("#pane-build button.main")
+        page.until(f"{SETTLED} && window.concio.view.shown.loads.at(-1).group === 'moved'")
+        page.click("[data-tool=select]")
+        at = page.js("window.concio.view.shown.loads.at(-1).at")
+        text = text_of(client)
+        page.js(WATCHED)
+        page.mouse("mousePressed", *page.where(*at))
+        fresh = "!document.getElementById('bound').hidden && document.getElementById('bound').className === ''"
+        for k, place in enumerate(way):
+            for share in (0.5, 1.0):
+                from_ = way[k - 1] if k else at
+                spot = [a + share * (b - a) for a, b in zip(from_, place, strict=True)]
+                page.mouse("mouseMoved", *page.where(*spot))
+                told = page.js("[document.getElementById('bound').hidden, document.getElementById('bound').className]")
+                assert told[0] or told[1] == "old", "grey as soon as the load has moved"
+            if k % 3 == 1:
+                page.until(fresh)
+        page.until(fresh)
+        page.mouse("mouseReleased", *page.where(*way[-1]))
+        page.until(f"{SETTLED} && window.concio.state().document.undo && document.getElementById('bound').hidden")
+        notes = [n for n in page.js("window.seen") if n["kind"] == "" and n["said"] and n["to"]]
+        asked = {(n["to"]["body"], *n["to"]["at"]): n["said"] for n in notes}
+        assert len(asked) >= 3
+        assert all("Where it stands now" in said for said in asked.values())
+        described = concio.loads(text, folder=tmp_path)
+        for (body, *spot), said in asked.items():
+            moved = dataclasses.replace(described.loads[-1], at=tuple(spot), bodies=(body,))
+            held = dataclasses.replace(described, loads=(*described.loads[:-1], moved))
+            bound = concio.limit(held, "moved", path=False, steps=False, search=False)
+            assert all(" ".join(line.split()) in said for line in bound_lines(bound)), (body, spot)
+            assert f"{bound.associated.multiplier:.6g}" in said, (body, spot)
+        assert len({said for said in asked.values()}) > 1, "the bound follows the load"
+        after = concio.loads(text_of(client), folder=tmp_path).loads[-1]
+        last = list(asked)[-1]
+        assert (after.bodies, after.at) == ((last[0],), tuple(last[1:]))
 
 
 def tab_to(page: Browser, condition: str, *, back: bool = False) -> None:

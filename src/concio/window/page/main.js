@@ -299,7 +299,7 @@ async function begin() {
   take(hello);
   refresh(TABS, true);
   pollIn(500);
-  window.concio = { view, state: () => ({ ...state, document: doc }), pictured: () => pictured, idle: () => !open };
+  window.concio = { view, state: () => ({ ...state, document: doc }), pictured: () => pictured, idle: () => !open, dragging: () => dragging };
 }
 addEventListener("pagehide", goodbye);
 begin().catch(fail);
