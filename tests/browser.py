@@ -182,7 +182,23 @@ class Browser:
         thrown = [e["params"]["exceptionDetails"] for e in self.events if e["method"] == "Runtime.exceptionThrown"]
         logged = [e["params"]["entry"] for e in self.events if e["method"] == "Log.entryAdded"]
         said = [f"{x.get('text')} {x.get('exception', {}).get('description', '')}" for x in thrown]
-        return said + [f"{x['text']} {x.get('url', '')}" for x in logged if x["level"] == "error"]
+        return said + [f"{x['text']} {x.get('url', '')}" for x in logged if x["level"] == "error"] + self._refusals()
+
+    def _refusals(self) -> list[str]:
+        """Return what was asked and answered where a request was refused."""
+        sent = {e["params"]["requestId"]: e["params"]["request"] for e in self.events
+                if e["method"] == "Network.requestWillBeSent"}  # fmt: skip
+        answers = [e["params"] for e in self.events if e["method"] == "Network.responseReceived"]
+        told = []
+        for one in answers:
+            if one["response"]["status"] >= 400:
+                asked = sent.get(one["requestId"], {}).get("postData", "")[:1000]
+                try:
+                    body = self.send("Network.getResponseBody", requestId=one["requestId"])["body"]
+                except AssertionError:
+                    body = "its body is gone"
+                told.append(f"{one['response']['status']} {one['response']['url']} asked {asked} answered {body}")
+        return told
 
 
 def _code(key: str) -> str:

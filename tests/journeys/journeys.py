@@ -19,6 +19,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -30,7 +31,8 @@ from concio.post.force_lines import force_chains
 from concio.verdict.limit_words import bound_lines
 from ifc_files import IfcText
 from rendered import rendered
-from windows import LATE, Client, window
+from windows import LATE, Client
+from windows import window as served
 
 ROOT = Path(__file__).resolve().parents[2]
 TEMPLATES = Path(concio.__file__).parent / "model" / "templates"
@@ -72,7 +74,21 @@ def test_the_audit_sees_what_is_wrong(page: Browser, client: Client) -> None:
 @pytest.fixture(scope="module")
 def chromium() -> Iterator[Browser]:
     with browser() as found:
+        THERE[:] = [found]
         yield found
+
+
+THERE: list[Browser] = []
+
+
+@contextmanager
+def window(folder: Path, file: Path | None = None) -> Iterator[Client]:
+    """Give a client of a window; the page is left before the window closes: it asks for its state every second."""
+    with served(folder, file) as found:
+        yield found
+        for one in THERE:
+            one.go("about:blank")
+            one.until("location.href === 'about:blank'")
 
 
 @pytest.fixture

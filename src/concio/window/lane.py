@@ -111,6 +111,9 @@ class Lane:
         """Ask something; what was asked before and is not answered is given up."""
         job = Job(next(self._numbers), request)
         with self._guard:
+            if not self._open:
+                job.end("cancelled")
+                return job
             if self._next is not None:
                 self._next.end("cancelled")
             self._next = job

@@ -11,8 +11,11 @@ from __future__ import annotations
 import hmac
 import json
 import secrets
+import socket
 import threading
+import time
 from collections.abc import Mapping
+from contextlib import suppress
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from importlib.resources import files
@@ -32,6 +35,8 @@ SLOWEST = 30.0
 """A connection on which nothing comes for so long is closed [s]."""
 MOST_CONNECTIONS = 64
 """More connections at a time than this are refused."""
+LAST_WORDS = 2.0
+"""So long a request is waited for when the window is closed [s]."""
 MOST_PARTS = 8
 PAGES = {".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml"}
 OWN = (
@@ -62,6 +67,8 @@ class Server(ThreadingHTTPServer):
         self.session = session
         self.token = secrets.token_urlsafe(24)
         self._room = threading.BoundedSemaphore(MOST_CONNECTIONS)
+        self._served: set[socket.socket] = set()
+        self._changed = threading.Condition()
         super().__init__((HOST, port), Handler)
 
     @property
@@ -83,10 +90,31 @@ class Server(ThreadingHTTPServer):
 
     def process_request_thread(self, request: Any, client_address: Any) -> None:
         """Serve a connection, then make room."""
+        with self._changed:
+            self._served.add(request)
         try:
             super().process_request_thread(request, client_address)
         finally:
             self._room.release()
+            with self._changed:
+                self._served.discard(request)
+                self._changed.notify_all()
+
+    def server_close(self) -> None:
+        """Close the door, then every connection as soon as what it has asked is answered.
+
+        A connection that stays open would be answered from a session that has ended, and a page would believe it.
+        """
+        super().server_close()
+        end = time.monotonic() + LAST_WORDS
+        with self._changed:
+            for one in self._served:
+                with suppress(OSError):
+                    one.shutdown(socket.SHUT_RD)
+            self._changed.wait_for(lambda: not self._served, end - time.monotonic())
+            for one in self._served:
+                with suppress(OSError):
+                    one.shutdown(socket.SHUT_RDWR)
 
     def handle_error(self, request: Any, client_address: Any) -> None:
         """Say nothing of connections that break."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import http.client
 import json
 import os
 import shutil
@@ -13,6 +14,7 @@ import threading
 import time
 import tomllib
 from collections.abc import Iterator
+from contextlib import suppress
 from http.client import HTTPException
 from pathlib import Path
 from typing import Any
@@ -388,6 +390,42 @@ def test_a_dragged_load_is_shown_with_certified_bounds(client: Client) -> None:
 
 @pytest.mark.long
 @pytest.mark.skipif(sys.platform == "win32", reason="signals of POSIX")
+def test_a_window_that_is_closed_answers_nobody_any_more(file: Path) -> None:
+    """A connection that the page keeps open ends with the window; a request that waits for a picture does too."""
+    with window(file.parent, file) as client:
+        server = client.server
+        kept = http.client.HTTPConnection("127.0.0.1", server.server_port, timeout=LATE)
+        path, own = f"/{server.token}/api/state", {"Origin": server.origin}
+        kept.request("POST", path, b'{"page": "page-1"}', own)
+        assert json.loads(kept.getresponse().read())["document"]["name"] == file.name
+        assert kept.sock is not None
+    assert kept.sock.recv(1) == b"", "the connection is over"
+
+
+def test_a_request_that_is_being_answered_ends_with_its_window(file: Path) -> None:
+    with window(file.parent, file) as client:
+        client.until("picture")
+        lane, ended = client.server.session.look, []
+        lane.close()
+        late = Lane([sys.executable, "-c", "import time; time.sleep(1000)"], 100.0)
+        client.server.session.look = late
+
+        def waiting() -> None:
+            with suppress(OSError, HTTPException, ValueError):
+                ended.append(client.call("acts", question="run", options={}))
+            ended.append("over")
+
+        thread = threading.Thread(target=waiting)
+        thread.start()
+        end = time.monotonic() + LATE
+        while late.job is None:
+            assert time.monotonic() < end
+            time.sleep(0.01)
+    thread.join(LATE)
+    assert ended[-1] == "over"
+    assert late.ask({"kind": "picture"}).state == "cancelled", "a lane that is closed keeps nobody waiting"
+
+
 def test_a_killed_server_loses_nothing(file: Path) -> None:
     command = [sys.executable, "-m", "concio", "window", str(file), "--no-open"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
