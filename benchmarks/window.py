@@ -36,6 +36,12 @@ from windows import Client, known, window  # noqa: E402
 PAGE = ROOT / "docs" / "howto" / "window.md"
 BEGIN, END = "<!-- measures: written by benchmarks/window.py -->", "<!-- end of measures -->"
 TOLD: list[str] = []
+DEMO = ("ercolano_panel.toml", "ercolano_panel_full_base.toml")
+"""The files of ``make demo``."""
+SIXTY = (
+    "[arch]\nspan = 4.0\nring = 0.6\nvoussoirs = 60\nblock = 'rigid'\nunit_weight = 20.0\nfriction = 0.7\n"
+)
+MIDDLES: dict[str, list[float]] = {}
 LOAD = {"kind": "point", "value": [0.0, -4.0], "bodies": ["v05"], "at": [-0.95, 1.64544827], "group": "live"}
 
 
@@ -92,6 +98,9 @@ def main(drags: int, count: int) -> None:
         shutil.copy(Path(concio.__file__).parent / "model" / "templates" / "arch.toml", folder)
         shutil.copy(ROOT / "examples" / "facade.dxf", folder)
         shutil.copy(ROOT / "examples" / "facade.toml", folder)
+        (folder / "sixty.toml").write_text(SIXTY, encoding="utf-8")
+        for name in DEMO:
+            shutil.copy(ROOT / "examples" / name, folder)
         if chromium() is None:
             tell("There is no Chromium: the first picture is not measured.")
         else:
@@ -99,17 +108,20 @@ def main(drags: int, count: int) -> None:
                 page.go("about:blank")
                 first_picture(page, folder / "arch.toml", "arch of 15 voussoirs")
                 first_picture(page, folder / "facade.toml", "facade of 182 stones")
+                demo(page, folder)
         with window(folder, folder / "arch.toml") as client:
             client.until("picture")
             client.do({"do": "add", "to": "loads", "table": LOAD})
             client.until("picture")
             drag(client, drags)
+            drag_on_sixty(client, max(drags // 10, 20))
             client.call("open", name="facade.toml")
             begun = time.perf_counter()
             client.until("picture")
             tell(f"facade of 182 stones: picture                                 {time.perf_counter() - begun:.2f} s")
             answer_of(client)
             drag_on_facade(client)
+            dropped(client)
             commands(client, drags)
             large_drop(client, 200)
         attack(folder, count)
@@ -149,6 +161,86 @@ def drag(client: Client, drags: int) -> None:
     tell(f"drag: median {1e3 * statistics.median(waited):.0f} ms of {drags}, of which the bound {share:.0%};"
           f" {1e3 * (processor(pid) - used) / drags:.0f} ms of processor each")  # fmt: skip
     tell(f"memory of the process: {before:.0f} MB after some, {resident(pid):.0f} MB after {drags} drags")
+
+
+def drag_on_sixty(client: Client, drags: int) -> None:
+    """Print how long a bound takes on an arch of 60 voussoirs: up to there a drag is to take a tenth of a second."""
+    client.call("open", name="sixty.toml")
+    client.do({"do": "add", "to": "loads", "table": {**LOAD, "bodies": ["v20"], "at": middle_of(client, "v20")}})
+    client.until("picture")
+    waited = []
+    for k in range(drags):
+        body = f"v{20 + k % 12}"
+        begun = time.perf_counter()
+        found = client.call("drag", table=0, body=body, at=middle_of(client, body))
+        waited.append(time.perf_counter() - begun)
+        assert found["state"] == "done", found
+    tell(f"arch of 60 voussoirs: drag, median {1e3 * statistics.median(waited):.0f} ms of {drags}")
+
+
+def middle_of(client: Client, body: str) -> list[float]:
+    """Return the middle of a block, from the picture."""
+    if body not in MIDDLES:
+        MIDDLES.update({b["name"]: b["centre"] for b in client.until("picture")["done"]["bodies"]})
+    return MIDDLES[body]
+
+
+def dropped(client: Client) -> None:
+    """Print what passes from a facade dropped on the page to its verdict, and to the whole answer."""
+    content = (ROOT / "examples" / "facade.toml").read_bytes() + b"# dropped\n"
+    begun, used = time.perf_counter(), processor(os.getpid())
+    client.raw("POST", f"/{client.server.token}/drop", content, X_Name="dropped.toml", X_Page=client.page)
+    client.until("picture")
+    first = time.perf_counter() - begun
+    client.call("ask", question="run", options={})
+    early = 0.0
+    while True:
+        asked = client.call("state")["asked"]
+        early = early or (time.perf_counter() - begun if asked.get("early") else 0.0)
+        if asked["state"] == "done":
+            break
+        time.sleep(0.05)
+    whole = time.perf_counter() - begun
+    told = f"picture after {first:.2f} s, verdict {early or whole:.2f} s, report {whole:.2f} s"
+    tell(f"facade of 182 stones dropped: {told}, of which {processor(os.getpid()) - used:.2f} s of processor")
+
+
+def demo(page: Browser, folder: Path) -> None:
+    """Print the clicks of the demo: both panels of the paper opened, asked, and their reports looked at."""
+    clicks = 0
+
+    def click(selector: str, wait: str) -> None:
+        nonlocal clicks
+        page.until(f"document.querySelector({json.dumps(selector)})")
+        page.click(selector)
+        clicks += 1
+        page.until(wait)
+
+    answered = ("document.querySelector('#running').hidden && "
+                "document.querySelector('#verdict-text div:not(.old) .sentence')")  # fmt: skip
+    said, begun = [], time.perf_counter()
+    with window(folder) as client:
+        page.go(client.server.address)
+        for k, name in enumerate(DEMO):
+            if k:
+                click("#open", "document.querySelector('#start').open")
+            page.until("document.querySelector('#start').open")
+            buttons = "[...document.querySelectorAll('#start button')]"
+            button = f"{buttons}.find((b) => b.textContent === {json.dumps(name)})"
+            page.until(button)
+            page.js(f"({button}).id = 'wanted'")
+            click("#wanted", f"window.concio.state().document?.name === {json.dumps(name)}")
+            page.until("window.concio.pictured().startsWith(window.concio.state().document.hash)")
+            if k:
+                click("#tab-ask", "document.querySelector('#run') && !document.querySelector('#run').disabled")
+            page.until("document.querySelector('#run') && !document.querySelector('#run').disabled")
+            click("#run", answered)
+            said.append(page.js("document.querySelector('#verdict-text .headline').textContent"))
+            click("#tab-report", "document.querySelector('#pane-report iframe')")
+        page.go("about:blank")
+    seconds = time.perf_counter() - begun
+    told = "; ".join(said)
+    tell(f"demo, both panels from the empty window to their reports: {clicks} clicks, {seconds:.0f} s ({told})")
 
 
 def drag_on_facade(client: Client) -> None:

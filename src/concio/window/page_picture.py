@@ -33,7 +33,7 @@ UNTRACED: dict[str, Any] = {
     **UNKNOWN, "early": False, "untraced": True, "dim": 2, "title": "", "bodies": [], "materials": {}, "laws": {},
     "loads": [], "supports": [], "ties": [], "groups": [], "fixed": 0,
 }  # fmt: skip
-"""Picture of a model whose stones are still to be traced: that is no fault."""
+"""Picture of a model whose stones are still to be traced: that is not a fault."""
 
 
 def picture(request: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
