@@ -49,6 +49,7 @@ def test_dry_running_bond_carries_tension_along_the_beds_by_friction():
     pulled = concio.strain_path(ELASTIC, [{"stress yy": -100.0}, {"stress xx": 2 * limit}])
     assert pulled.outcomes[-1] is Outcome.LIMIT
     assert not pulled.complete
+    assert any("ended at 0.5 of its stage" in note for note in pulled.notes), pulled.notes
     assert pulled.stress[-1] == pytest.approx([limit, -100.0, 0.0], abs=1e-6)
     drawn = concio.strain_path(ELASTIC, [{"stress yy": -100.0}, {"strain xx": 1e-3}])
     assert drawn.complete

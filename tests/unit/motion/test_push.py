@@ -302,3 +302,18 @@ def test_an_elastic_slab_that_leans_on_a_corner_stands_and_is_pushed_as_a_rigid_
     by_hand = 20.0 * length * thick * arm[0] / (at[0] * 0.3 - at[1] * 1.0)
     assert rigid.peak == pytest.approx(by_hand, rel=1e-3)
     assert found.peak == pytest.approx(by_hand, rel=2e-2)
+
+
+def test_a_push_that_another_structure_ends_does_so_on_its_own_curve():
+    """A wide pillar on springs leads, a narrow one beside it gives way: displacements stay in proportion to the load."""
+    law = concio.JointLaw(0.8, normal_stiffness=2e4, tangential_stiffness=1e4)
+    wide = box("wide", -0.4, 0.4, 0.0, 1.0, kind="rigid", material="stone")
+    narrow = box("narrow", 3.0, 3.2, 0.0, 1.0, kind="rigid", material="stone")
+    floor = box("floor", -30.0, 30.0, -1.0, 0.0, kind="fixed")
+    top = concio.ControlPoint("wide", at=(0.4, 1.0), direction=(1.0, 0.0))
+    found = concio.push(model_of(floor, wide, narrow, law=law, loads=(weight(),)), control=top)
+    assert found.certified
+    assert found.ending is PushEnding.NO_EQUILIBRIUM
+    assert 0.08 < found.multiplier[-1] <= concio.push(model_of(floor, narrow, law=law, loads=(weight(),))).peak
+    flexibility = found.displacement[1:] / found.multiplier[1:]
+    assert flexibility == pytest.approx(flexibility[0], rel=5e-4)
