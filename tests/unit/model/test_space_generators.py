@@ -14,7 +14,7 @@ import concio
 from commands import run
 from concio import GeometryError, InputError, Model
 from concio.contact.assembly import Assembly
-from concio.model.generate import plan_walls
+from concio.model.generate import plan, plan_walls
 from concio.model.generate.bonds import SHORTEST
 
 RIGID = {"block": "rigid", "unit_weight": 1.0}
@@ -370,3 +370,17 @@ def test_courses_begin_with_whole_blocks_on_the_ground_and_lap_the_one_below(len
     assert first == pytest.approx(length * np.array([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 5.25]))
     second = plan_walls._set_out(*ends, bricks, *bricks.unit(1), first)
     assert second == pytest.approx(length * np.array([0.0, 0.5, 1.5, 2.5, 3.5, 4.5, 5.25]))
+
+
+@pytest.mark.parametrize(("axis", "at_the_end"), [(0, False), (0, True), (1, False), (1, True)])
+def test_a_wall_that_ends_on_another_butts_against_it_whichever_is_drawn_first(axis: int, at_the_end: bool) -> None:
+    """A cross-wall from the face of a long one, to the left or to the right of it, gives way to it; a corner does not."""
+    half, across = 0.125, 3.0
+    reach = (across - 2.0, across + half) if at_the_end else (across - half, across + 2.0)
+    long = plan.PlanWall(1 - axis, 0.0, 6.0, across, 2.0)
+    short = plan.PlanWall(axis, *reach, 2.5, 2.0)
+    assert plan.junctions([long, short], half) == [plan.Junction(0, 1)]
+    assert plan.junctions([short, long], half) == [plan.Junction(1, 0)]
+    for along in (half, 6.0 - half):
+        corner = plan.PlanWall(axis, *reach, along, 2.0)
+        assert plan.junctions([corner, long], half) == [plan.Junction(0, 1)]
