@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 import concio
 from concio.analysis.parameters import Parameter, parameters_of
 from concio.analysis.seismic.assessment_asked import Head
+from concio.analysis.sensitivity import _Optimum
 from concio.contact.assembly import assemble
 from concio.model.model import Model
 from concio.report.assessment_page import AssessmentReport
@@ -128,3 +129,20 @@ def test_a_mechanism_that_slides_has_its_derivatives_by_virtual_work() -> None:
     assert found.worst is not None
     bound = replace(found.worst, found=replace(found.worst.found, flow="associated"))
     assert replace(found, mechanisms=(bound,)).sensitivity() is None
+
+
+def test_forces_and_motions_beside_the_optimum_are_optima_too() -> None:
+    """Where a limit has other forces, they balance the loads at the multiplier, and what slides is at its friction."""
+    wall = concio.wall(length=1.0, height=0.5, block_size=(0.25, 0.125), friction=0.4, block="rigid", horizontal=1.0)
+    assembly = assemble(wall)
+    dead = assembly.problem({"live": 0.0})
+    live = assembly.problem({"live": 1.0}).f - dead.f
+    best = _Optimum(dead, live, associated_limit(dead, live))
+    others, weight = best.others(), float(np.abs(dead.f).sum())
+    assert others
+    assert any(np.abs(one.t_n - best.t_n).max() > 1e-3 * weight for one in others)
+    for one in (best, *others):
+        off = dead.R.T @ (dead.f + one.multiplier * live + dead.C_n.T @ one.t_n + dead.C_t.T @ one.t_t.ravel())
+        assert np.abs(off).max() < 1e-7 * weight
+        slides = best.slip > 1e-3 * best.slip.max()
+        assert np.abs(one.t_t[slides, 0]) == pytest.approx(0.4 * np.abs(one.t_n[slides]), abs=1e-7 * weight)

@@ -183,3 +183,14 @@ def test_a_missing_table_is_named(tabled: Path) -> None:
 def test_reports_have_the_same_words_in_both_languages() -> None:
     words = tomllib.loads((files("concio.report") / "diagnosis_words.toml").read_text(encoding="utf-8"))
     assert {*words["en"]} == {*words["it"]}
+
+
+def test_directions_of_measurements_and_candidates_are_those_of_the_file(tmp_path: Path) -> None:
+    told = 'name = "D"\nkind = "level"\nbody = "v03"\nat = [0.0, 0.3]\ndirection = [0.6, 0.8]\nvalue = "2 mm"\n'
+    file = tmp_path / "a.toml"
+    file.write_text(head().format(f"[[survey.measurements]]\n{told}"))
+    survey = read_survey(file)
+    assert survey.measurements[0].direction == (0.6, 0.8)
+    asked = tomllib.loads(file.read_text())["survey"]["candidates"]
+    assert [list(c.direction) for c in survey.candidates] == [c.get("direction", []) for c in asked]
+    assert any("direction" in c for c in asked)

@@ -374,7 +374,7 @@ def test_courses_begin_with_whole_blocks_on_the_ground_and_lap_the_one_below(len
 
 @pytest.mark.parametrize(("axis", "at_the_end"), [(0, False), (0, True), (1, False), (1, True)])
 def test_a_wall_that_ends_on_another_butts_against_it_whichever_is_drawn_first(axis: int, at_the_end: bool) -> None:
-    """A cross-wall from the face of a long one, to the left or to the right of it, gives way to it; a corner does not."""
+    """A cross-wall that ends on a long one, from the left or from the right, gives way to it; at a corner none does."""
     half, across = 0.125, 3.0
     reach = (across - 2.0, across + half) if at_the_end else (across - half, across + 2.0)
     long = plan.PlanWall(1 - axis, 0.0, 6.0, across, 2.0)

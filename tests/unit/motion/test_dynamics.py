@@ -302,3 +302,13 @@ def test_pairs_that_slide_to_and_fro_stick(monkeypatch):
     assert found.steps.shares() == {"active set": 1.0}
     assert found.steps.factorisations.max() <= 5
     assert found.energy.error < 1e-9
+
+
+def test_energy_below_rounding_grows_with_weight_and_size():
+    """A weight times a length: what lifts a model by a billionth of its size."""
+    light = standing()
+    heavy = replace(light, materials={n: replace(m, unit_weight=4 * m.unit_weight) for n, m in light.materials.items()})
+    told = [concio.dynamics(m, duration=2e-3, step=1e-3).energy.rounding for m in (light, heavy)]
+    weight, size = 20.0 * 0.4 * 1.2, float(np.ptp(np.concatenate([b.outline for b in light.bodies]), axis=0).max())
+    assert told[1] == pytest.approx(4.0 * told[0])
+    assert 0.9e-9 < told[0] / (weight * size) < 1.5e-9

@@ -12,6 +12,7 @@ from scipy.spatial.transform import Rotation
 import concio
 from concio.analysis.motion.certified import Returned
 from concio.analysis.motion.scheme import Drive
+from concio.analysis.motion.structures import structures_of
 from concio.contact.reference import Reference
 from models import box, model_of, weight
 from motion_models import G, standing
@@ -238,3 +239,13 @@ def test_blocks_on_springs_that_stand_apart_move_each_by_itself():
     assert found.end.centre[1] == pytest.approx(alone.end.centre[1], abs=1e-12)
     assert found.end.rotation[1] == pytest.approx(alone.end.rotation[1], abs=1e-12)
     assert found.end.memory.stored.sum() > alone.end.memory.stored.sum() > 0
+
+    whole = Reference.of(both, G)
+    memory = found.end.memory
+    own = [(one, one.part(found.end).memory) for one in structures_of(whole)]
+    assert [len(part.key) > 0 for _, part in own] == [True, True]
+    assert sum(len(part.key) for _, part in own) == len(memory.key)
+    for one, part in own:
+        again = one.remembered(part)
+        row = {int(name): k for k, name in enumerate(memory.key)}
+        assert memory.force[[row[int(name)] for name in again.key]].tolist() == part.force.tolist()

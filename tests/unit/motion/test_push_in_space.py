@@ -116,7 +116,7 @@ def test_iterations_meet_an_unstable_equilibrium(stiffness):
     resistance, y, wanted, turned_back = Resistance(1), 1e-3, 0.4, False
     for iteration in range(1, 40):
         x = np.array([stiffness * (wanted - y)]) / RESISTANCE[resistance.level]
-        share = resistance.back(iteration, x)
+        share = resistance.share(iteration, x, controlled=True)
         turned_back |= share < 0
         y = y + share * float(x[0])
         resistance.adapt(iteration, share * x)
@@ -126,14 +126,24 @@ def test_iterations_meet_an_unstable_equilibrium(stiffness):
     assert y == pytest.approx(wanted, abs=1e-12)
 
 
-@pytest.mark.parametrize("stiffness", [0.0, 1e-3, 1.0])
-def test_iterations_that_creep_or_converge_are_not_turned_back(stiffness):
-    resistance, y = Resistance(1), 0.0
+@pytest.mark.parametrize("controlled", [False, True])
+@pytest.mark.parametrize("stiffness", [0.0, 1e-3, 1.0, 4.0])
+def test_iterations_that_creep_or_converge_go_on_the_same_way(stiffness, controlled):
+    """What resists beside the stiffness leaves a ratio 1 / (1 + k / e) between iterations: the rest is made at once."""
+    resistance, y, far = Resistance(1), 0.0, 0
     for iteration in range(1, 12):
-        x = np.array([1e-3 - stiffness * y]) / RESISTANCE[resistance.level]
-        assert resistance.back(iteration, x) == 1.0
-        y += float(x[0])
-        resistance.adapt(iteration, x)
+        x = np.array([1e-3 - stiffness * y]) / (stiffness + RESISTANCE[resistance.level])
+        share = resistance.share(iteration, x, controlled=controlled)
+        assert share >= 1.0
+        far += share > 1.0
+        y += share * float(x[0])
+        resistance.adapt(iteration, share * x)
+        if stiffness and abs(stiffness * y - 1e-3) < 1e-13:
+            break
+    assert far == 0 or stiffness
+    if stiffness >= 1.0:
+        assert far
+        assert stiffness * y == pytest.approx(1e-3, rel=1e-9)
 
 
 def test_a_model_that_is_turned_about_the_vertical_is_pushed_the_same():

@@ -122,3 +122,16 @@ def test_tops_are_found(seed):
         return
     found = highest(at, known, 1e-9)
     assert at(found) == pytest.approx(1.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_a_kink_beyond_the_largest_known_value_is_found(mirrored):
+    """A chord drawn on past the largest value bounds the last interval, of which only one side has a neighbour."""
+    kink, sign = (0.2, -1.0) if mirrored else (0.8, 1.0)
+
+    def at(x):
+        away = sign * (x - kink)
+        return -max(-away, 10.0 * away)
+
+    found = highest(at, [(x, at(x)) for x in (0.0, 0.5, 1.0)], 1e-9)
+    assert found == pytest.approx(kink, abs=1e-8)

@@ -37,6 +37,7 @@ def block(law: JointLaw, push: tuple[float, float]) -> Model:
         (JointLaw(0.9), (0.0, 1.0), 0.6),  # over its short one
         (JointLaw(0.9), (0.6, 0.8), 0.4 / 0.6),  # over the long one again: 0.2 W = 0.5 (0.6 alpha W)
         (JointLaw(0.3, cohesion=2.0), (0.6, 0.8), 0.3 + 2.0 * 0.24 / 4.8),  # slides
+        (JointLaw(0.9, cohesion=5.0, tensile_strength=2.0), (1.0, 0.0), 0.4 + 2 * 0.12 * 0.4 / (4.8 * 0.5)),  # two tear
         (JointLaw(0.9, compressive_strength=60.0), (1.0, 0.0), (7.2 * 0.4 - 4.8 * 0.2) / (4.8 * 0.5) - 0.4),
     ],
 )

@@ -8,7 +8,10 @@ import numpy as np
 import pytest
 
 from concio.problem.cone import Cone
+from concio.solvers.lcp.linear_problem import LinearComplementarity
+from concio.solvers.path.rate_lcp import lemke
 from concio.solvers.path.rates import rates, values
+from lcp_oracles import infeasibility
 
 N, M = 3, 2
 
@@ -58,3 +61,20 @@ def test_distances_from_the_bounds() -> None:
     assert found.plus == pytest.approx([2.0 + 2.0 + 1.0, 3.0 - 2.0])
     assert found.minus == pytest.approx([2.0 + 2.0 - 1.0, 3.0 + 2.0])
     assert found.gap_zero / found.force_zero == pytest.approx(0.3 / 6.0)
+
+
+def test_directions_of_a_vertex_solve_their_complementarity_problem():
+    """Or nothing does, which a vector proves; what only rounding resists has no finite rate."""
+    rng = np.random.default_rng(5)
+    for _ in range(40):
+        n = int(rng.integers(1, 6))
+        root = rng.standard_normal((n, int(rng.integers(1, n + 1))))
+        skew = rng.standard_normal((n, n))
+        problem = LinearComplementarity(root @ root.T + 0.3 * (skew - skew.T), rng.standard_normal(n))
+        z = lemke(problem.M, problem.q)
+        if z is None:
+            assert infeasibility(problem) is not None
+        else:
+            assert problem.residual(z) < 1e-9 * max(1.0, np.abs(z).max())
+    assert lemke(np.array([[1e-12]]), np.array([-1.0])) is None
+    assert lemke(np.array([[1e-3]]), np.array([-1.0])) == pytest.approx([1e3])

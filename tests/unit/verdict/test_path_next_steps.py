@@ -6,8 +6,9 @@ from types import SimpleNamespace
 
 import pytest
 
+from concio.analysis.path_loads import GroupLoad
 from concio.solvers.path.record import Outcome as Ended
-from concio.verdict.path_verdict import _next_steps
+from concio.verdict.path_verdict import _load_words, _next_steps
 from concio.verdict.verdict import Outcome
 
 
@@ -29,3 +30,16 @@ def test_next_steps_follow_from_how_a_path_ended(outcome: Outcome, told: dict[st
     found = {"short": False, "complete": True, "certified": True, "ended": Ended.REACHED} | told
     path = SimpleNamespace(outcomes=[Ended.REACHED, found.pop("ended")], **found)
     assert words in " ".join(_next_steps(path, outcome))
+
+
+@pytest.mark.parametrize(
+    ("begin", "asked", "end", "words"),
+    [
+        (0.0, 1.0, 1e-17, "live = 0 of 1"),
+        (2.0, 0.0, 1e-17, "live = 0"),
+        (0.0, 1.0, 0.25, "live = 0.25 of 1"),
+        (1.0, -1.0, -1.0, "live = -1"),
+    ],
+)
+def test_rounding_of_a_load_is_no_load(begin: float, asked: float, end: float, words: str) -> None:
+    assert _load_words(GroupLoad("live", begin, asked, end, end)) == words

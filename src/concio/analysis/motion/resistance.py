@@ -32,6 +32,9 @@ SWINGING = 0.6
 GROWING = 1.05
 """Times the last iteration from which on one in the same direction goes away from an equilibrium that is unstable."""
 
+SLOW = 0.3
+"""Share of the last iteration, gone once more, from which on the rest of them is made at once."""
+
 ALIKE = 0.99
 """Cosine between two iterations in the same direction."""
 
@@ -47,6 +50,7 @@ class Resistance:
     def __init__(self, unknowns: int) -> None:
         self.level = self._before = USUAL
         self._last: Array = np.zeros(unknowns)
+        self._plain = True
 
     def adapt(self, iteration: int, x: Array) -> None:
         """Take the displacement (N,) of an iteration into account, from the third on."""
@@ -57,17 +61,22 @@ class Resistance:
         elif iteration > 2 and self.level and along > STEADY * float(last @ last) and along > STEADY * float(x @ x):
             self.level -= 1
 
-    def back(self, iteration: int, x: Array) -> float:
-        """Return the share of the displacement (N,) of an iteration to make: 1, or a negative one.
+    def share(self, iteration: int, x: Array, *, controlled: bool) -> float:
+        """Return the share of the displacement (N,) of an iteration to make: 1, or what two of one ratio r lead to.
 
-        A block that stands on its corner is unstable sideways: what it is off grows in each iteration by one ratio,
-        whatever resists, and the next one is off by more. Where two iterations show that ratio r, the equilibrium lies
-        at -1 / (r - 1) times the second (Aitken's extrapolation, which does not ask whether a sequence converges). A
+        Where resistance and turning loads leave a ratio r to the iterations in one direction, the equilibrium lies at
+        1 / (1 - r) times the second (Aitken's extrapolation, which does not ask whether a sequence converges). That is
+        far ahead where they creep. A block that stands on its corner is unstable sideways: what it is off grows in each
+        iteration, r > 1, and the equilibrium lies behind; it is gone back to where a displacement is controlled. A
         resistance that was made q times smaller between them accounts for q of r, and takes the place of the 1.
         """
-        last = self._last
+        last, plain, self._plain = self._last, self._plain, True
         size, before, along = float(x @ x), float(last @ last), float(x @ last)
         if iteration < 3 or not before > 0 or along < ALIKE * np.sqrt(size * before):
             return 1.0
         ratio, smaller = np.sqrt(size / before), RESISTANCE[self._before] / RESISTANCE[self.level]
-        return float(-1.0 / (ratio - smaller)) if ratio > GROWING * smaller else 1.0
+        away = ratio > GROWING * smaller
+        if (away and controlled) or (plain and smaller == 1.0 and SLOW < ratio < STEADY):
+            self._plain = away
+            return float(1.0 / (smaller - ratio))
+        return 1.0

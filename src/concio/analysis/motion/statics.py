@@ -169,7 +169,7 @@ class Statics(SmallDisplacements):
             found = self._solved(p, *_guess(p, memory, found))
             if target is not None:
                 multiplier, found = self._controlled(look, multiplier, found, target - done, resistance.level)
-            share = 1.0 if target is None else resistance.back(iteration, found.x)
+            share = resistance.share(iteration, found.x, controlled=target is not None)
             x, unstable = share * found.x, unstable or share < 0
             before, here = here, self.moved(here, x, look)
             done = done + float(look.measure @ x) if self.control is None else self.controlled_at(here) - first
