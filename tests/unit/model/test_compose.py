@@ -170,6 +170,7 @@ def test_what_cannot_be_merged_or_placed() -> None:
         ("no body, role or layer 'abutmnt' to leave out", lambda: concio.place(
             concio.arch(span=3, ring=0.4, voussoirs=5), without="abutmnt")),
         (r"at = \[1, 2, 3\] must be 2 finite lengths", lambda: concio.place(pier, (1, 2, 3))),
+        (r"at = \[1.0, inf\] must be 2 finite lengths", lambda: concio.place(pier, (1.0, float("inf")))),
         ("mirror = 'z' is not made of x, y", lambda: concio.place(pier, mirror="z")),
         ("a plane model turns in its plane", lambda: concio.place(pier, turn=3, axis=(0, 0, 1))),
     ):  # fmt: skip

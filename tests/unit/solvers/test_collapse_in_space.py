@@ -12,6 +12,7 @@ from concio import JointLaw, Load, Model, Polyhedron, Rigid
 from concio.contact.assembly import assemble
 from concio.solvers.statics.collapse_search import CollapseSearch, find_collapse_state
 from concio.solvers.statics.collapse_state import certify_collapse
+from concio.solvers.statics.cone_statics import ConeStatics
 
 
 def search(model: Model, **options: Any) -> CollapseSearch:
@@ -111,3 +112,11 @@ def test_limit_draws_its_motions_in_space() -> None:
     found = concio.limit(block(JointLaw(0.9), (1.0, 0.0)), path=False, steps=False, search=True)
     assert found.collapse_state is not None
     assert found.plot.collapse_state().figure is not None
+
+
+@pytest.mark.parametrize("push", [(1.0, 0.0), (0.6, 0.8)])
+def test_a_mechanism_of_a_programme_has_the_largest_entry_one(push: tuple[float, float]) -> None:
+    assembly = assemble(block(JointLaw(0.9), push))
+    dead = assembly.problem({"live": 0.0})
+    found = ConeStatics(dead).largest(assembly.problem({"live": 1.0}).f - dead.f)
+    assert np.abs(found.velocity).max() == pytest.approx(1.0, abs=1e-15)
