@@ -10,7 +10,7 @@ import typer
 from concio.cli.options import EngineOf, File, Json, Language, Quiet, UnitsOf, loaded
 from concio.cli.outcome import flush, guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
-from concio.cli.progress import found_so_far, progress_bar, verdict_so_far
+from concio.cli.progress import found_so_far, on_the_way, progress_bar, verdict_so_far
 from concio.problem.limits_of_work import LARGEST_MARGIN
 
 if TYPE_CHECKING:
@@ -65,12 +65,16 @@ def limit(
     from concio.analysis.limit import limit_stages
     from concio.analysis.margins import friction_by_solving, load_margin
     from concio.cli.limit_files import write_limit
+    from concio.display import counted
     from concio.verdict.limit_words import limit_lines, solving_line, stage_lines
 
     groups = list(group or ["live"])
     if out is not None:
         check_directory(out)
     assembly = concio.assemble(loaded(file, units, engine))
+    if not json:
+        size = counted(len(assembly.model.free_bodies), "block"), counted(len(assembly.pairs), "contact pair")
+        on_the_way([f"  {'model':<20} {' and '.join(size)}; the associated bound is sought first"])
     if quick:
         path, steps, search, friction = path or False, steps or False, search or False, friction or False
     wanted = len(assembly.pairs) <= LARGEST_MARGIN if friction is None else friction
@@ -86,12 +90,12 @@ def limit(
             stages = limit_stages(
                 assembly, groups, path=path, steps=steps, search=search, friction=wanted, progress=progress
             )
-            on_the_way: list[str] = []
+            known_lines: list[str] = []
             for name, known in stages:
                 found = known
                 latest = stage_lines(name, known)
-                on_the_way += latest
-                found_so_far(on_the_way, latest, shown=not json)
+                known_lines += latest
+                found_so_far(known_lines, latest, shown=not json)
     except KeyboardInterrupt:
         if found is not None:
             tell(limit_lines(found))

@@ -90,8 +90,14 @@ def found_so_far(lines: list[str], latest: list[str], *, shown: bool) -> None:
     listener = LISTENER.get()
     if listener is not None:
         listener("found", lines)
-    elif shown and not QUIET.get() and not sys.stderr.isatty():
-        sys.stderr.write("".join(f"so far:{line}\n" for line in latest))
+    elif shown:
+        on_the_way(latest)
+
+
+def on_the_way(lines: list[str]) -> None:
+    """Print on standard error what is known on the way, unless it is a terminal, which has a bar."""
+    if not QUIET.get() and not sys.stderr.isatty():
+        sys.stderr.write("".join(f"so far:{line}\n" for line in lines))
         sys.stderr.flush()
 
 

@@ -13,6 +13,7 @@ import pytest
 import typer.main
 from typer.testing import CliRunner
 
+import concio
 from commands import run
 from concio.cli.main import EXIT_CODES, app
 from pillars import pillar, sideways
@@ -144,7 +145,9 @@ def test_a_process_that_prints_json_prints_nothing_else(asked: tuple[str, ...], 
 def test_numbers_of_a_limit_are_printed_as_they_are_found_where_there_is_no_terminal(wall: Path) -> None:
     code, out, err = run("limit", wall, "--quick")
     assert code == 0
-    first = err.splitlines()[0]
+    size, first = err.splitlines()[:2]
+    assert size.startswith("so far:  model")
+    assert f" {len(concio.assemble(concio.load(wall)).pairs)} contact pairs" in size, "the size of the task comes first"
     assert first.startswith("so far:  associated bound")
     number = first.split()[4]
     assert float(number) > 0

@@ -251,6 +251,19 @@ def test_the_friction_of_a_tower_that_slides_is_found_without_pivoting(monkeypat
     found = concio.friction_margin(tower, live=None)
     assert found.settled
     assert found.below < 1 / 6 <= found.factor + 1e-12
+    assert found.programmes <= 8, "Newton's method begins with nearly the forces that it ends with"
+
+
+@pytest.mark.parametrize("make", [lambda: barrel(7, 2), lambda: wall(3, 3), lambda: dome(3, 6)])
+def test_the_least_friction_is_what_single_trials_say(make: Callable[[], Built]) -> None:
+    """Newton's method beside programmes that begin with one unit on every contact, either side of its bracket."""
+    loaded = make().at(0.05)
+    found = smallest_friction(loaded)
+    assert found.settled
+    assert found.factor > 0
+    assert statically_admissible(loaded.with_friction(found.factor * (1 + 1e-6))).exists
+    less = statically_admissible(loaded.with_friction(found.below * (1 - 1e-6)))
+    assert less.mechanism is not None
 
 
 def test_all_directions_of_friction_are_alike() -> None:

@@ -32,6 +32,9 @@ ENDLESS = 1e7
 CLEAR = 100.0
 """Times the gap that the multiplier must be away from one for the programme to stop with a motion as its answer."""
 
+LEAST = 1e-3
+"""Least initial normal force, as a share of the mean."""
+
 ROUNDS = 6
 """Times forces are brought closer to balance."""
 
@@ -50,12 +53,15 @@ class Balance:
         Motion to blame where there are no such forces.
     multiplier : float
         Largest multiplier of the programme; below 1 where there are none.
+    at_bound : (m,) array
+        Normal forces at that multiplier [kN].
     """
 
     t: Array
     residual: float
     velocity: Array
     multiplier: float
+    at_bound: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,18 +159,31 @@ class ConeStatics:
         offset: Array = self.project(load) - self.programme.Ct @ self.shift.ravel()
         return offset
 
-    def forces(self) -> Balance:
-        """Search forces in balance with the load of the problem."""
+    def forces(self, normal: Array | None = None, close: float = np.inf) -> Balance:
+        """Search forces in balance with the load of the problem.
+
+        Parameters
+        ----------
+        normal : (m,) array, optional
+            Normal forces [kN] with whose load the multiplied load begins, instead of one unit on every contact.
+        close : float
+            Largest gap, as a share of what the multiplier is away from 1, at which the programme may end as decided.
+        """
         it, m = self.programme, self.problem.pairs
-        ones = np.zeros((m, self.problem.dim))
-        ones[:, 0] = np.minimum(1.0, 0.5 * it.pairs.cone.cap)
+        ones, unit = np.zeros((m, self.problem.dim)), np.ones(m)
+        if normal is not None:
+            unit = normal / self.force + self.shift[:, 0]
+            unit = np.maximum(unit, LEAST * float(unit.mean()))
+        ones[:, 0] = np.minimum(unit, 0.5 * it.pairs.cone.cap)
         e, f = -(it.Ct @ ones.ravel()), self.offset(self.problem.f)
         g = f - e
         size = float(np.abs(g).max(initial=0.0))
         if not size > 0:
-            return self._judged(ones, f, np.zeros_like(f), 1.0)
+            return self._judged(ones, f, np.zeros_like(f), 1.0, ones)
 
         def decided(a: ConeAnswer) -> bool:
+            if a.gap * max(1.0, abs(a.multiplier)) > close * abs(a.multiplier - size):
+                return False
             carried = a.multiplier >= size and a.primal < PROGRAMME_SETTLED
             above = a.multiplier + a.gap * max(1.0, abs(a.multiplier))  # what the motion does not exceed
             return carried or (a.dual < PROGRAMME_SETTLED and CLEAR * (above - a.multiplier) < size - above)
@@ -173,16 +192,16 @@ class ConeStatics:
         multiplier = answer.multiplier / size
         share = min(1.0 / multiplier, 1.0) if multiplier > 0 else 1.0
         t = (1.0 - share) * ones + share * answer.t
-        return self._judged(t, f, answer.v, multiplier)
+        return self._judged(t, f, answer.v, multiplier, answer.t)
 
-    def _judged(self, t: Array, f: Array, v: Array, multiplier: float) -> Balance:
+    def _judged(self, t: Array, f: Array, v: Array, multiplier: float, at_bound: Array) -> Balance:
         real = self.real(t)
         residual = self.excess(real, self.problem.f)
         if multiplier >= 1.0 - 1e-9 and residual > PROGRAMME_ROUNDING:
             nearer = self.real(self.balance(t, f))
             left = self.excess(nearer, self.problem.f)
             real, residual = (nearer, left) if left < residual else (real, residual)
-        return Balance(real, residual, self.velocity(v), multiplier)
+        return Balance(real, residual, self.velocity(v), multiplier, self.real(at_bound)[:, 0])
 
     def largest(self, live: Array, least: float = -np.inf) -> Bounds:
         """Search the largest multiplier of the live load (N,) beside the load of the problem.

@@ -23,7 +23,7 @@ from concio.problem.parts import Part, parts_of
 from concio.problem.solution import Mechanism
 from concio.problem.tolerances import BALANCED, NEARLY_BALANCED
 from concio.representation import short_repr
-from concio.solvers.statics.cone_statics import ConeStatics
+from concio.solvers.statics.cone_statics import Balance, ConeStatics
 from concio.solvers.statics.mechanism import mechanism_from, total_load
 from concio.solvers.statics.programme import Method, StaticProgramme, optimise
 
@@ -113,7 +113,7 @@ def _of_one(problem: ContactProblem, *, thorough: bool) -> StaticState:
         proof = None if exists else mechanism_from(problem, velocity)
         return StaticState(exists, np.zeros(0), np.zeros((0, s)), residual, velocity, proof)
     if problem.dim == 3:
-        return _by_cones(problem, thorough)
+        return _by_cones(problem, ConeStatics(problem, pivoting=thorough).forces())
     methods: tuple[Method | None, ...] = (None, "interior", "highs")
     found = []
     for method in methods:  # a vertex that rounding moved has no forces left to balance with, an inner point has
@@ -123,9 +123,18 @@ def _of_one(problem: ContactProblem, *, thorough: bool) -> StaticState:
     return min(found, key=lambda state: state.residual)
 
 
-def _by_cones(problem: ContactProblem, thorough: bool) -> StaticState:
-    """Ask the cone programme, and say what its forces and its motion prove."""
-    found = ConeStatics(problem, pivoting=thorough).forces()
+def admissible_near(problem: ContactProblem, normal: Array, close: float = np.inf) -> tuple[StaticState, Array]:
+    """Search forces of a problem in space from normal forces (m,) that are nearly those, without pivoting.
+
+    Return the state, and the normal forces (m,) at the largest multiplier of what these normal forces do not balance:
+    known to a gap of the share ``close`` of what that multiplier is away from one.
+    """
+    found = ConeStatics(problem, pivoting=False).forces(normal, close)
+    return _by_cones(problem, found), found.at_bound
+
+
+def _by_cones(problem: ContactProblem, found: Balance) -> StaticState:
+    """Return what the forces and the motion of the cone programme prove."""
     exists = found.residual <= BALANCED
     proof = None if exists else mechanism_from(problem, found.velocity)
     return StaticState(exists, found.t[:, 0], found.t[:, 1:], found.residual, found.velocity, proof)

@@ -12,11 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from concio.problem.contact_problem import ContactProblem
+from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.limits_of_work import FRICTION_PROGRAMMES
+from concio.problem.parts import parts_of
 from concio.problem.tolerances import WIDE_BRACKET
 from concio.representation import short_repr
-from concio.solvers.statics.existence import StaticState, statically_admissible
+from concio.solvers.statics.existence import StaticState, admissible_near, statically_admissible
 from concio.solvers.statics.mechanism import absorbed_power
 
 LARGEST = 1024.0
@@ -62,6 +63,22 @@ APART = 16.0
 """Times as far from Newton's step lies the next trial where one next to it was undecided."""
 
 
+CLOSE = 0.03
+"""Gap of a programme of Newton's method, as a share of what its multiplier is away from one."""
+
+
+NEARLY = 0.5
+"""Its step, relative, below which the next factor is taken for the answer, and a trial made on either side of that."""
+
+
+LARGE = 2000
+"""Pairs from which on these trials lie :data:`APART` times as far: nearer ones are undecided there and take longer."""
+
+
+NEWTON = 8
+"""Largest number of its steps."""
+
+
 class _Search:
     """Asks whether factors hold, and keeps the closest proofs either way."""
 
@@ -69,6 +86,8 @@ class _Search:
         self.problem, self.programmes = problem, 0
         self.low, self.high = -np.inf, np.inf
         self.guess, self.thorough = np.nan, problem.dim == 2
+        self.normal: Array | None = None
+        self.whole = problem.dim == 3 and sum(part.unknowns.size > 0 for part in parts_of(problem)) == 1
 
     def by_all_means(self, factor: float) -> bool | None:
         """Ask, and where that decides nothing, ask with pivoting."""
@@ -82,15 +101,24 @@ class _Search:
     def ask(self, factor: float) -> bool | None:
         """Return True with forces, False with a mechanism, None with neither; the guess is the dual's next factor."""
         scaled = self.problem.with_friction(factor)
-        state = statically_admissible(scaled, thorough=self.thorough)
         self.programmes += 1
+        if self.normal is None or self.thorough:
+            state = statically_admissible(scaled, thorough=self.thorough)
+            normal = state.normal_force
+        else:
+            state, normal = admissible_near(scaled, self.normal)
+        return self._noted(factor, state, self._next(scaled, state.velocity, normal, factor))
+
+    def _noted(self, factor: float, state: StaticState, following: float) -> bool | None:
+        """Keep what a state proves; the guess is that of the largest factor that does not hold."""
         if state.exists:
-            self.high = min(self.high, factor)
+            if factor < self.high:
+                self.high, self.normal = factor, state.normal_force if self.whole else None
             return True
         if state.mechanism is None:
             return None
         if factor > self.low:
-            self.low, self.guess = factor, self._next(scaled, state, factor)
+            self.low, self.guess = factor, following
         return False
 
     @property
@@ -98,21 +126,43 @@ class _Search:
         """True where the proofs are as close as an answer asks for: closer ones are worth no dear programme."""
         return self.high - self.low <= WIDE_BRACKET * self.high < np.inf
 
-    def _next(self, scaled: ContactProblem, state: StaticState, factor: float) -> float:
-        """Return the factor at which the motion to blame would no longer gain power: Newton's step from below."""
-        v, problem = state.velocity, self.problem
+    def newton(self, factor: float) -> float:
+        """Return the factor to which Newton's method converges from one that holds, to a hundredth of a bracket.
+
+        What grows with the friction is the largest multiplier of the load that the normal forces of the last factor
+        that held do not balance. It is nearly linear, on either side of the answer. Both sides leave their proofs.
+        """
+        for _ in range(NEWTON):
+            assert self.normal is not None
+            scaled = self.problem.with_friction(factor)
+            state, normal = admissible_near(scaled, self.normal, CLOSE)
+            self.programmes += 1
+            following = self._next(scaled, state.velocity, normal, factor)
+            self._noted(factor, state, following)
+            if not self.low < following < self.high or not following > 0.0:
+                return np.nan
+            if abs(following - factor) < NEARLY * following:
+                return following
+            factor = following
+        return np.nan
+
+    def _next(self, scaled: ContactProblem, v: Array, t_n: Array, factor: float) -> float:
+        """Return the factor at which a motion (N,) would neither gain nor lose power: Newton's step."""
+        problem = self.problem
         w_t = np.linalg.norm((problem.C_t @ v).reshape(problem.pairs, -1), axis=1)
-        slope = float((state.normal_force * problem.laws.friction * w_t).sum())
+        slope = float((t_n * problem.laws.friction * w_t).sum())
         short = float(scaled.f @ v) - absorbed_power(scaled, v)
-        return factor + short / slope if slope > 0 and short > 0 else np.nan
+        return factor + short / slope if slope > 0 else np.nan
 
     def bracket(self) -> bool:
         """Find one factor that holds, upwards from 1, and one that does not; return whether both were found."""
-        if self.by_all_means(0.0):
-            return False
         factor = 1.0
         while factor <= LARGEST and not self.by_all_means(factor):
             factor *= 2.0
+        if self.whole and np.isfinite(self.high):
+            self.guess = self.newton(self.high)
+        if not np.isfinite(self.low) and self.by_all_means(0.0):
+            return False
         return bool(np.isfinite(self.high) and np.isfinite(self.low))
 
     def close_in(self, width: float) -> None:
@@ -123,7 +173,7 @@ class _Search:
         Programmes pivot only where nothing else brings the proofs as close as an answer asks for.
         """
         shares = (0.5, 0.25, 0.75, 0.125, 0.875)
-        undecided, short, step = 0, BELOW, 0.25 * width
+        undecided, short, step = 0, BELOW, 0.25 * width * (APART if self.whole and self.problem.pairs > LARGE else 1.0)
         while self.high - self.low > width and self.programmes < FRICTION_PROGRAMMES:
             beyond = False
             inside = np.isfinite(self.guess) and self.low < self.guess + step < self.high - step
