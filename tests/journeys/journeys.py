@@ -484,6 +484,12 @@ def test_stones_of_the_text_are_given_a_material_by_course(page: Browser, tmp_pa
         page.press("Enter")
         names = chosen(page)
         assert names == {b.name for b in wall.free_bodies if 0.5 < b.centroid[1] < 0.75}
+        client.page = page.js("sessionStorage.getItem('page')")
+        first = '[[blocks]]\nname = "first"\nrectangle = [[3, 0], [3.5, 0.25]]\nmaterial = "block"\n\n'
+        text = text_of(client).replace("[[blocks]]", first + "[[blocks]]", 1)
+        assert "error" not in client.do({"do": "text", "text": text})
+        page.until(f"{SETTLED} && window.concio.view.shown.bodies.length === {len(wall.bodies) + 1}")
+        assert chosen(page) == names, "numbers of blocks change, the selection does not"
         pick(page, "[name=set-material]", "tuff")
         page.click("#apply-material")
         page.until(f"{SETTLED} && window.concio.view.shown.bodies.some((b) => b.material === 'tuff')")
@@ -494,6 +500,9 @@ def test_stones_of_the_text_are_given_a_material_by_course(page: Browser, tmp_pa
         value(page, "#pane-build [name=at]", "1, 0.6")
         page.click("#pane-build button.main")
         assert "one block" in page.js("document.querySelector('#pane-build [role=alert]').textContent")
+        client.call("new", kind="column")
+        page.until(f"window.concio.state().document.name === 'column.toml' && {SETTLED}")
+        assert chosen(page) == set(), "another model has other blocks"
 
 
 PLACES = """(() => { const names = ['#tab-tables', '#run', '#picture', '#attention', '#verdict-head'];
@@ -1040,7 +1049,7 @@ def ifc_of(bodies: Sequence[concio.Polyhedron]) -> str:
     return made.text()
 
 
-@pytest.mark.parametrize("suffix", ["obj", "stl", "ply", "ifc"])
+@pytest.mark.parametrize("suffix", ["obj", "stl", "ply", "ifc", "3dm"])
 def test_solids_are_dropped_and_asked(page: Browser, tmp_path: Path, suffix: str) -> None:
     tower = concio.drums(height=1.0, drums=2, diameter=0.5, block="rigid")
     tower = dataclasses.replace(tower, bodies=tower.free_bodies)  # the window adds the ground

@@ -64,13 +64,23 @@ export function zoom(factor, at = null) {
 
 export function show(shown) {
   const first = !view.shown || view.shown.dim !== shown.dim || seen.fitted;
+  keepSelected(view.shown, shown);
   view.shown = shown; view.moved = null; view.face = null;
-  view.selected.bodies = new Set([...view.selected.bodies].filter((k) => k < shown.bodies.length));
-  view.selected.joints = new Set([...view.selected.joints].filter((k) => k < shown.joints.length));
   if (view.names === null && shown.bodies.length) { view.names = shown.bodies.length <= NAMED; document.getElementById("names").checked = view.names; }
   canvas.hidden = document.getElementById("turning").hidden = shown.dim !== 3;
   if (shown.dim === 3) setModel(shown, canvas);
   if (first) fit(); else draw();
+}
+
+/* what is selected stays so by its name: numbers are others when blocks come or go */
+function keepSelected(before, shown) {
+  const names = (one) => one.bodies.map((b) => b.name), between = (one) => one.joints.map((j) => `${one.bodies[j.a].name} | ${one.bodies[j.b].name}`);
+  const kept = (set, old, now) => { const chosen = new Set([...set].map((k) => old[k])); return new Set(now.map((name, k) => [name, k]).filter(([name]) => chosen.has(name)).map(([, k]) => k)); };
+  const { selected } = view;
+  selected.bodies = before ? kept(selected.bodies, names(before), names(shown)) : new Set();
+  if (!before || !shown.early) selected.joints = before && !before.early ? kept(selected.joints, between(before), between(shown)) : new Set();
+  const counts = (one) => [one.loads, one.supports, one.ties].map((list) => list.length).join();
+  if (!before || counts(before) !== counts(shown)) selected.things = new Set();
 }
 
 export function clear() { view.shown = view.moved = null; canvas.hidden = document.getElementById("turning").hidden = true; svg.replaceChildren(); }
