@@ -363,6 +363,17 @@ def test_a_load_along_a_line_is_shared_by_the_nodes_on_it() -> None:
     assert force.sum(0) == pytest.approx([0, 0, -21.0])
 
 
+@pytest.mark.parametrize(("first", "last"), [(0.4, 2.3), (0.2, 0.9), (1.0, 2.0)])
+def test_a_load_along_a_part_of_an_edge_has_its_total_and_its_middle(first: float, last: float) -> None:
+    """Nodes before and behind the line are no marks of it."""
+    block = box("a", (0, 0, 0), (3, 1, 1), mesh_size=1.0)
+    load = Load("traction", (0.0, 0.0, -7.0), edge=((first, 0, 1), (last, 0, 1)), bodies=("a",))
+    assembly = concio.assemble(model(GROUND, block, loads=(load,), element="H8"))
+    nodes, force = assembly.disc.nodes(1), assembly.load().reshape(-1, 3)
+    assert force.sum(0) == pytest.approx([0, 0, -7.0 * (last - first)])
+    assert force[:, 2] @ nodes == pytest.approx(-7.0 * (last - first) * np.array([0.5 * (first + last), 0, 1]))
+
+
 @pytest.mark.parametrize(("block", "size"), [(frame_block("f"), 0.6), (l_block("l"), 0.35)])
 def test_slivers_of_a_mesh_of_tetrahedra_are_taken_away(block: Polyhedron, size: float) -> None:
     """The points of these meshes alone leave flat tetrahedra; moved a little, they leave none."""

@@ -14,11 +14,12 @@ from concio.contact.assembly import assemble
 from concio.errors import InputError, MethodError
 from concio.model.generate.panel import running_bond_panel
 from concio.problem.certificate import certify
-from concio.problem.pair_state import PairState, PairStates
+from concio.problem.pair_state import Normal, PairState, PairStates
 from concio.problem.solution import Status, pair_states
 from concio.solvers.algebra.scaled import scale
 from concio.solvers.algebra.updated_factor import UpdatedFactor
 from concio.solvers.methods import find
+from concio.solvers.pivoting.covering import cover_point
 from concio.solvers.pivoting.pair_rows import PairSystem
 from concio.solvers.pivoting.sparse_lemke import solve
 from contact_problems import rigid, wall
@@ -91,6 +92,24 @@ def test_the_ground_holds_each_rigid_motion_by_a_pair_of_its_own() -> None:
     assert (system.x[s.pairs :] == [1.0, 0.0]).all()
     assert np.isinf(system.cone.cap[s.pairs :]).all()
     assert not system.cone.cohesion[s.pairs :].any()
+
+
+@pytest.mark.parametrize("pressed", [0.0, 0.5, 1.0, 3.0])
+def test_closed_pairs_begin_inside_of_their_strengths(pressed: float) -> None:
+    """Whatever the point they are taken from: on its path the cover vanishes, and states change from inside."""
+    problem = wall(2, 2, sides=True)
+    problem = replace(problem, laws=replace(problem.laws, cap=np.full(problem.pairs, 2.0)))
+    system = PairSystem(scale(problem))
+    m, u = system.m, np.linspace(-1.0, 1.0, system.n)
+    p, r = pressed * system.cone.cap, np.linspace(-9.0, 9.0, m)
+    states = np.full(m, int(Normal.CLOSED))
+    cover_point(system, states, np.zeros(m, dtype=int), u, p, r)
+    place = (system.C @ u).reshape(-1, 2) + system.x
+    soft = np.asarray(system.a + system.delta)
+    forces = -(place + np.column_stack([system.cover.g, system.cover.h])) / soft
+    assert (forces[:, 0] > 0).all()
+    assert (forces[:, 0] < system.cone.cap).all()
+    assert (np.abs(forces[:, 1]) < system.cone.linear_strength(forces[:, 0]) + 1e-9).all()
 
 
 def test_crushing_stops_at_the_cap() -> None:
