@@ -20,6 +20,7 @@ from concio.analysis.seismic.local_mechanism import LocalMechanism, NoMechanism
 from concio.analysis.seismic.sections import OutOfPlane
 from concio.analysis.seismic.site import Site
 from concio.analysis.seismic.strengthening import Measure, strengthen
+from concio.analysis.seismic.strip_ties import StripTie, strip_tie
 from concio.analysis.seismic.variations import TieForce, tie_force, variations
 
 __all__ = [
@@ -33,9 +34,11 @@ __all__ = [
     "OutOfPlane",
     "Site",
     "Storeys",
+    "StripTie",
     "TieForce",
     "assess",
     "strengthen",
+    "strip_tie",
     "tie_force",
     "variations",
 ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from html import escape
 from typing import TYPE_CHECKING
 
@@ -29,4 +30,23 @@ def strips_html(t: Texts, found: Assessment) -> str:
         rows.append([name, f"{escape(how)}, {escape(t.way(m.direction))}", t.n(m.multiplier, 5), t.n(m.level),
                      t.n(m.d0), t.n(m.zeta), said])  # fmt: skip
     head = [t.words[k] for k in ("strip", "strip_motion", "alpha0", "strip_level", "d0", "zeta", "outcome")]
-    return f"<h3>{t.say('strips')}</h3><p>{t.say('strips_text')}</p><div class=strips>{t.table(head, rows, 2)}</div>"
+    table = f"<div class=strips>{t.table(head, rows, 2)}</div>"
+    return f"<h3>{t.say('strips')}</h3><p>{t.say('strips_text')}</p>{table}{_ties_html(t, found)}"
+
+
+def _ties_html(t: Texts, found: Assessment) -> str:
+    """Return the least tie forces of strips; empty where none needs a tie."""
+    rows = []
+    for tie in found.strip_ties:
+        name = escape(t.strip(tie.strip.name))
+        if not math.isfinite(tie.force):
+            rows.append([name, t.n(tie.before, 5), t.n(tie.target, 5), *["&ndash;"] * 3, t.say("strip_tie_none")])
+            continue
+        said = t.say("strip_tie_proved" if tie.holds else "strip_tie_slides", reached=t.n(tie.reached, 5))
+        rows.append([name, t.n(tie.before, 5), t.n(tie.target, 5), t.n(tie.height), t.n(tie.force), t.n(tie.per_metre),
+                     said])  # fmt: skip
+    if not rows:
+        return ""
+    head = [t.words[k] for k in ("strip", "strip_tie_before", "strip_tie_target", "strip_tie_height", "strip_tie_force",
+                                 "strip_tie_per_metre", "outcome")]  # fmt: skip
+    return f"<p>{t.say('strip_tie_text')}</p><div class=strips>{t.table(head, rows, 1)}</div>"

@@ -17,6 +17,7 @@ from concio.analysis.seismic.local_mechanism import LevelOutcome, LocalMechanism
 from concio.analysis.seismic.open_items import OpenItem, open_items
 from concio.analysis.seismic.out_of_plane import StripFound
 from concio.analysis.seismic.site import Site
+from concio.analysis.seismic.strip_ties import StripTie, multiplier_needed, strip_tie
 from concio.analysis.seismic.what_if import sensitivity_of_mechanism
 from concio.analysis.sensitivity import Sensitivity
 from concio.contact.assembly import Assembly
@@ -139,6 +140,17 @@ class Assessment(Shown):
         """
         m = self.worst if mechanism is None else mechanism
         return None if m is None else sensitivity_of_mechanism(m.section or self.model, m, self.arguments.get("live"))
+
+    @cached_property
+    def strip_ties(self) -> tuple[StripTie, ...]:
+        """For each strip of a facade in elevation that needs one, the least force of a tie, and its height.
+
+        With it no mechanism of the strip begins to move outwards below the demands of the linear checks.
+        """
+        asked = [(s.strip, multiplier_needed(self.site, self.levels, s.strip, self.confidence, self.arguments.get("q")))
+                 for s in self.strips if not s.like]  # fmt: skip
+        found = [strip_tie(strip, target) for strip, target in asked if target > 0]
+        return tuple(tie for tie in found if tie.force > 0)
 
     @cached_property
     def open(self) -> tuple[OpenItem, ...]:
