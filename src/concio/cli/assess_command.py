@@ -28,6 +28,12 @@ CONFIDENCE = {
     "crushing": "that of least knowledge: joints do not crush",
 }
 
+NO_DERIVATIVES = (
+    "no derivatives: in the weakest mechanism joints slide under pressure in space, or its state does not settle how "
+    "forces are shared"
+)
+"""What the console says where an assessment has no derivatives."""
+
 
 @guarded
 def assess(
@@ -95,6 +101,8 @@ def assess(
             answer([f"  strengthening        {stronger.sentence}"])
         if sensitivity is not None:
             answer([f"  depends on           {sensitivity.sentence}"])
+        elif asked.sensitivity and found.worst is not None and found.worst.found.flow != "no sliding":
+            answer([f"  depends on           {NO_DERIVATIVES}"])
     written: list[str] = []
     if out is not None:
         verdict_so_far(verdict)

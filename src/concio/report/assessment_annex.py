@@ -187,7 +187,7 @@ def _summed(t: Texts, weights: Sequence[HandRow]) -> list[HandRow]:
         size = sum(r.size for r in own)
         point = np.sum([r.size * np.array(r.point) for r in own], axis=0) / size
         resists, pushes = sum(r.resists for r in own), sum(r.pushes for r in own)
-        label = t.words["a_weights_of"].format(number=g + 1, n=len(own))
+        label = t.words["a_weights_of" if len(own) > 1 else "a_weight_of_one"].format(number=g + 1, n=len(own))
         made.append(HandRow("sum", label, g, own[0].load, size, tuple(point.tolist()), resists / size, pushes / size,
                             resists, pushes))  # fmt: skip
     return made

@@ -310,15 +310,17 @@ class AssessmentReport(Texts):
             derivatives = sensitivity_html(self, self.sensitivity, strip=strip, slides=slides)
         if not self.varied:
             return f"<section id=sensitivity>{title}{derivatives}</section>"
-        rows = [[self.say("as_given"), self.n(self.found.worst.multiplier, 6), self.n(self.found.zeta)]]
+        worst = self.found.worst
+        rows = [[self.say("as_given"), escape(self.name(worst)), self.n(worst.multiplier, 6), self.n(self.found.zeta)]]
         for v in self.varied:
             stands = v.multiplier == v.multiplier
             text = self.n(v.multiplier, 6) if stands else self.say("does_not_stand")
-            rows.append([self.say(f"vary_{v.what}", factor=self.n(v.factor)), text, self.n(v.zeta)])
-        head = [self.words[k] for k in ("sensitivity", "alpha0", "zeta")]
+            name = escape(self.named(v.name)) if v.name else "&ndash;"
+            rows.append([self.say(f"vary_{v.what}", factor=self.n(v.factor)), name, text, self.n(v.zeta)])
+        head = [self.words[k] for k in ("sensitivity", "name", "alpha0", "zeta")]
         return (
             f"<section id=sensitivity>{title}{derivatives}<p>{self.say('sensitivity_text')}</p>"
-            f"{self.table(head, rows)}</section>"
+            f"{self.table(head, rows, 2)}</section>"
         )
 
     def needed(self) -> dict[str, float]:

@@ -269,7 +269,8 @@ class _Words:
         ]  # fmt: skip
         if apart:
             m, o = apart[0]
-            more = self.say("corner_more", n=len(apart) - 1) if len(apart) > 1 else ""
+            key = "corner_one" if len(apart) == 2 else "corner_more"
+            more = self.say(key, n=len(apart) - 1) if len(apart) > 1 else ""
             limits.append(self.say("corner", name=self.name(m.name), level=o.level, zeta=o.zeta,
                                    ratio=o.check.ratio) + more)  # fmt: skip
         limits += [

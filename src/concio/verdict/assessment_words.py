@@ -57,6 +57,7 @@ EN = {
     "corner": "'{name}', {level}: zeta_E = {zeta} is a ratio of accelerations, capacity over demand in "
     "displacements is {ratio}: as a_g is scaled the corner periods move with it, so that the displacement demanded "
     "does not grow like a_g",
+    "corner_one": "; the same is true of one other value of zeta_E",
     "corner_more": "; the same is true of {n} other values of zeta_E",
     "cut": "the curve of '{name}', push {way}, is cut at {d} m of its control point: {reason}; its zeta_E ignores what "
     "lies beyond",
@@ -145,13 +146,13 @@ IT = {
     "dualità di {gap}; non è stato trovato alcuno stato di collasso con attrito di Coulomb.",
     "sought": "ricerche fatte: {sought}, di cui {named} di meccanismi con nome e {parts} in altre parti della "
     "struttura: sopra le quote in cui i blocchi si incontrano ({levels}), accanto alle linee delle aperture "
-    "({openings}), alle facce di ritorni e muri di spina ({returns}), oltre altre linee in cui la struttura cambia "
+    "({openings}), alle facce di risvolti e muri di spina ({returns}), oltre altre linee in cui la struttura cambia "
     "({changes}); {followed} meccanismi sono stati seguiti, gli altri si muovono solo ad accelerazioni oltre le loro",
     "left_out": "cercato in {sought} di {there} {what}: la struttura è troppo grande per tutte; per cercare altrove "
     "nominarne le parti",
     "what_levels": "quote",
     "what_openings": "linee di aperture",
-    "what_returns": "facce di ritorni",
+    "what_returns": "facce di risvolti",
     "what_changes": "altre linee",
     "part": "il più debole di tutti è uno in cui si muovono solo alcuni blocchi, {bodies}; la ricerca fra tutti i "
     "moti finiva a un moltiplicatore maggiore",
@@ -162,11 +163,12 @@ IT = {
     "corner": "«{name}», {level}: zeta_E = {zeta} è un rapporto di accelerazioni, capacità su domanda in "
     "spostamento vale {ratio}: scalando a_g si spostano i periodi dello spettro, e lo spostamento richiesto non "
     "cresce come a_g",
+    "corner_one": "; lo stesso vale per un altro valore di zeta_E",
     "corner_more": "; lo stesso vale per altri {n} valori di zeta_E",
     "cut": "la curva di «{name}», spinta {way}, è troncata a {d} m del punto di controllo: {reason}; il suo zeta_E "
     "trascura quanto segue",
     "strips": "fuori dal piano la facciata è stata esaminata in {n} strisce, tagliate dal disegno e libere ai lati "
-    "(ritorni, muri di spina e ammorsature non sono considerati), con fessure in corrispondenza di al più {courses} "
+    "(risvolti, muri di spina e ammorsature non sono considerati), con fessure in corrispondenza di al più {courses} "
     "corsi; {held}",
     "strips_free": "non è stata indicata alcuna quota in cui solai o catene la trattengano: nessuna è considerata",
     "strips_held": "trattenuta nei due versi alle quote {heights} m, come indicato: che solai e catene possano farlo "
@@ -190,7 +192,7 @@ IT = {
     "non è una risposta, e non è stato trovato alcuno stato di collasso",
     "ground_hand": "alpha_0 di «{name}» con i lavori virtuali, blocco per blocco dalle coordinate del modello, vale "
     "{hand}; il programma dà {alpha} (differenza {difference})",
-    "ground_all": "lo stesso è stato fatto per tutti gli {n} meccanismi riportati; differenza massima {difference}",
+    "ground_all": "lo stesso è stato fatto per tutti e {n} i meccanismi riportati; differenza massima {difference}",
     "ground_differs": "per {n} dei meccanismi riportati il calcolo a mano e il programma differiscono fino a "
     "{difference}: i risultati non vanno accettati prima di averne capito il motivo",
     "ground_bound": "forze in equilibrio e un moto dimostrano il moltiplicatore minimo della spinta {way} fra tutti i "

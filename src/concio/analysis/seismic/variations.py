@@ -103,12 +103,15 @@ class Variation:
     factor : float
     multiplier, zeta : float
         alpha_0 and zeta_E of that mechanism; ``nan`` where the model does not stand, ``inf`` without mechanism.
+    name : str
+        Of that mechanism, which may be another one; empty without mechanism.
     """
 
     what: str
     factor: float
     multiplier: float
     zeta: float
+    name: str = ""
 
 
 @entry_point
@@ -155,7 +158,7 @@ def variations(found: Assessment, progress: ProgressCallback | None = None) -> t
                 continue
             weakest = other.worst
             alpha = math.inf if weakest is None else weakest.multiplier
-            result.append(Variation(what, factor, alpha, other.zeta))
+            result.append(Variation(what, factor, alpha, other.zeta, "" if weakest is None else weakest.name))
     return tuple(result)
 
 
