@@ -75,18 +75,6 @@ class Laws:
         z = np.zeros_like(mu)
         return cls(mu, z, z.copy(), z.copy(), z.copy(), z.copy(), np.full_like(mu, np.inf))
 
-    @property
-    def plain(self) -> bool:
-        """True where every pair is a hard Coulomb pair: no cohesion, tension, dilatancy, compliance or cap."""
-        return not (
-            self.cohesion.any()
-            or self.tension.any()
-            or self.dilatancy.any()
-            or self.normal_compliance.any()
-            or self.tangential_compliance.any()
-            or np.isfinite(self.cap).any()
-        )
-
     @cached_property
     def cone(self) -> Cone:
         """The forces each pair may carry."""

@@ -118,3 +118,12 @@ def test_forces_of_whole_quadratic_edges_are_lumped_as_their_shape_functions():
     """Against a rigid side: one to four to one; where an edge is cut, as linear ones."""
     assert couple(line([0.0, 0.5, 1.0], order=2), None, 1.0).length == pytest.approx([1 / 6, 4 / 6, 1 / 6])
     assert couple(line([0.0, 0.5, 1.0]), None, 1.0).length == pytest.approx([1 / 4, 1 / 2, 1 / 4])
+
+
+def test_nodes_near_a_cut_are_those_within_a_thousandth_of_the_shortest_element() -> None:
+    """Elements of 0.1 and of 3 m: a node 2 mm from the cut is a point of its own, one of 0.05 mm is not."""
+    for near, points in ((2e-3, [0.0, 2e-3, 1.0]), (5e-5, [0.0, 1.0])):
+        at = np.array([near - 0.1, near, near + 3.0])
+        found = couple(line(at), None, 1.0)
+        assert len(found.at) == len(points)
+        assert found.length.sum() == pytest.approx(1.0)

@@ -251,3 +251,19 @@ def test_blocks_on_springs_that_stand_apart_move_each_by_itself():
         again = one.remembered(part)
         row = {int(name): k for k, name in enumerate(memory.key)}
         assert memory.force[[row[int(name)] for name in again.key]].tolist() == part.force.tolist()
+
+
+def test_forces_are_handed_from_pairs_that_end_to_pairs_that_begin_and_to_no_others():
+    stepper, state = stepper_of(blocks(((-A, -B, 0.0), (A, B, H)), ((-A, -B, H), (A, B, 2 * H))))
+    search, still = stepper.maker.search, (np.zeros((3, 3)), np.zeros((3, 3)), state.strain)
+    rows = search.rows(state.placement, *still)
+    rng, handed = np.random.default_rng(3), 0
+    for _ in range(30):
+        carried, valid = rng.random((2, len(rows.gap))) < 0.5
+        here = replace(rows, valid=valid, point=np.zeros_like(rows.point))  # all within reach of each other
+        source, target, _ = search.handed_on(here, carried)
+        assert (carried & ~valid)[source].all()
+        assert (valid & ~carried)[target].all()
+        assert len(np.unique(source)) == len(source) == len(np.unique(target))
+        handed += len(source)
+    assert handed > 0
