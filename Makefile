@@ -81,6 +81,15 @@ newest:
 	@test -n "$(NEWEST)" || { echo "no other Python was found: make newest NEWEST=/path/to/python"; exit 1; }
 	$(MAKE) test-all PYTHON=$(NEWEST) VENV=$(VENV)-newest
 
+# The tests with the linear algebra kernels of an older processor (CORE), with one thread and with two: nothing that is
+# tested may hold by the rounding of one kernel.
+CORE ?= Nehalem
+.PHONY: older
+older: $(VENV)/.installed-dev
+	@status=0; for threads in 1 2; do \
+	OPENBLAS_CORETYPE=$(CORE) OMP_NUM_THREADS=$$threads $(BIN)/python -m pytest -n 2 --dist worksteal -m "$(SELECT)" \
+	|| status=1; done; exit $$status
+
 docs: $(VENV)/.installed-docs
 	$(BIN)/sphinx-build -E -W --keep-going -b html docs docs/_build/html
 	$(BIN)/python docs/check_links.py docs/_build/html

@@ -138,7 +138,7 @@ def test_laws_are_multiplied_by_areas():
     hard = assemble(on_ground(box("a", 0, 1, 0, 1))).laws
     assert not hard.normal_compliance.any()
     assert np.isinf(hard.cap).all()
-    assert not (hard.cohesion.any() or hard.tension.any() or hard.dilatancy.any() or hard.tangential_compliance.any())
+    assert not any(v.any() for v in (hard.cohesion, hard.tension, hard.dilatancy, hard.tangential_compliance))
 
 
 @pytest.mark.parametrize(
