@@ -125,16 +125,12 @@ class RowMaker:
             Whether what turning adds is wanted.
         """
         slots = self.slots
+        gap, valid = self.gaps(touch)
         if self.plain:
-            pick = self.end
-            point, normal, gap = touch.point[pick], touch.normal[pick], touch.gap[pick] + slots.opening
-            valid = touch.valid[pick]
+            point, normal = touch.point[self.end], touch.normal[self.end]
         else:
-            s, low, high = slots.fraction, slots.low, slots.high
             point, normal = self._between(touch.point), self._between(touch.normal)
             normal /= norm(normal)[:, None]
-            gap = (1 - s) * touch.gap[low] + s * touch.gap[high] + slots.opening
-            valid = touch.valid[low] & touch.valid[high]
         a, b = slots.body_a, slots.body_b
         (m, w), d, k = self.columns.shape, self.dim, self.rigid_motions
         frame = frames(normal) if touch.frame is None else touch.frame[self.end]
@@ -169,6 +165,14 @@ class RowMaker:
         length = np.where(slots.face >= 0, touch.length[slots.face], 1.0) if len(touch.length) else 1.0
         area = slots.share * length * slots.thickness
         return Rows(self.columns, values, gap, imposed, extra, valid, area, point, frame)
+
+    def gaps(self, touch: Touch | SolidTouch) -> tuple[Array, Array]:
+        """Return the gaps (m,) of rigid sides [m], and which pairs (m,) touch something."""
+        slots = self.slots
+        if self.plain:
+            return touch.gap[self.end] + slots.opening, touch.valid[self.end]
+        s, low, high = slots.fraction, slots.low, slots.high
+        return (1 - s) * touch.gap[low] + s * touch.gap[high] + slots.opening, touch.valid[low] & touch.valid[high]
 
     def _between(self, ends: Array) -> Array:
         """Return what slots (m, ...) have of vectors at the contact points, linear between two of them."""

@@ -138,18 +138,17 @@ class Observer:
     def joint_motion(self, state: MotionState) -> tuple[Array, Array]:
         """Return the largest opening and the plastic slip of each joint that was there in the beginning (f,) [m]."""
         opening, slip = np.zeros(len(self.joints)), np.zeros(len(self.joints))
-        if not len(self.joints) or self.maker.search.layout is None:
+        search, layout = self.maker.search, self.maker.search.layout
+        if not len(self.joints) or layout is None:
             return opening, slip
         own, number = self._joints_of_slots()
-        if self.reference.disc.dim == 2:
-            gap = self.rows(state).gap
-        elif self.frames.elastic:
+        if self.frames.elastic:
             rows = self.rows(state)
-            gap = np.where(rows.valid, rows.gap, 0.0)
+            gap, valid = rows.gap, rows.valid
         else:
-            search, slots = self.maker.search, self.maker.slots
-            touch = search.touch(state.placement)
-            gap = np.where(touch.valid, touch.gap + slots.opening, 0.0)
+            gap, valid = layout.maker.gaps(search.touch(state.placement))
+        if self.reference.disc.dim == 3:
+            gap = np.where(valid, gap, 0.0)
         np.maximum.at(opening, number, np.maximum(gap[own], 0.0))
         memory = state.memory
         if memory.key is self.maker.slots.key:
