@@ -285,8 +285,8 @@ class AssessmentReport(Texts):
             settled = m.complete or m.least < 1
             verdict = self.verdict(m.least, m.least >= 1) if settled else self.say("unchecked")
             rows.append([f'<a href="#m{k}">{escape(self.name(m))}</a>', escape(self.way(m.direction)),
-                         self.n(m.multiplier, 6), self.n(m.e_star), self.n(m.onset), self.n(m.d0), self.n(m.zeta),
-                         verdict])  # fmt: skip
+                         self.n(m.multiplier, 6), self.n(m.e_star), self.n(m.onset), self.n(m.d0),
+                         self.n(m.zeta if m.decisive else math.nan), verdict])  # fmt: skip
         for none in found.locked:
             said = "no_locked" if math.isinf(none.multiplier) else "no_large"
             text = self.say(said, alpha=self.n(none.multiplier))

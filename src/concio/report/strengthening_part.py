@@ -47,7 +47,9 @@ def before_after(t: Texts, before: Assessment | None, after: Assessment) -> str:
         if one is None:
             rows.append([t.say(key), t.say("does_not_stand"), *["&ndash;"] * (4 + len(after.levels))])
             continue
-        levels = [min((m.zeta_at(v) for m in one.mechanisms), default=math.inf) for v in after.levels]
+        seen = {o.level for m in one.mechanisms for o in m.outcomes} if one.mechanisms else set(after.levels)
+        levels = [min((m.zeta_at(v) for m in one.mechanisms), default=math.inf) if v in seen else math.nan
+                  for v in after.levels]  # fmt: skip
         worst = one.worst
         name, way = ("&ndash;", "&ndash;") if worst is None else (t.name(worst), t.way(worst.direction))
         numbers = [math.inf, math.nan] if worst is None else [worst.multiplier, worst.e_star]

@@ -28,7 +28,7 @@ def strips_html(t: Texts, found: Assessment) -> str:
         if s.like:
             said = t.say("strip_like", name=t.strip(s.like))
         rows.append([name, f"{escape(how)}, {escape(t.way(m.direction))}", t.n(m.multiplier, 5), t.n(m.level),
-                     t.n(m.d0), t.n(m.zeta), said])  # fmt: skip
+                     t.n(m.d0), t.n(m.zeta if m.decisive else math.nan), said])  # fmt: skip
     head = [t.words[k] for k in ("strip", "strip_motion", "alpha0", "strip_level", "d0", "zeta", "outcome")]
     table = f"<div class=strips>{t.table(head, rows, 2)}</div>"
     return f"<h3>{t.say('strips')}</h3><p>{t.say('strips_text')}</p>{table}{_ties_html(t, found)}"

@@ -193,6 +193,8 @@ class _Words:
         level, zeta = self.decisive(worst)
         if outcome is Outcome.FAILS and zeta >= 1.0:
             level, zeta = min(self.by_level().items(), key=lambda item: item[1])
+        elif worst.decisive is None:
+            return self.say("headline_unchecked", level=level)
         return self.say(f"headline_{outcome.value}", zeta=zeta, level=level)
 
     def decisive(self, worst: LocalMechanism) -> tuple[str, float]:
@@ -210,11 +212,14 @@ class _Words:
             text = self.say("answer_none", why=why)
             return text if outcome is Outcome.HOLDS else f"{text} {self.say('incomplete')}"
         level, zeta = self.decisive(worst)
-        parts = [self.say("answer", level=level, zeta=zeta, name=self.name(worst.name), way=self.way(worst.direction),
+        key = "answer" if worst.decisive else "answer_unchecked"
+        parts = [self.say(key, level=level, zeta=zeta, name=self.name(worst.name), way=self.way(worst.direction),
                           alpha=self.write(worst.multiplier, 6))]  # fmt: skip
         levels = self.by_level()
         if len(levels) > 1:
-            told = "; ".join(self.say("rest", level=k, zeta=v) for k, v in levels.items())
+            seen = {o.level for m in self.found.mechanisms for o in m.outcomes}
+            none = self.say("not_checked")
+            told = "; ".join(self.say("rest", level=k, zeta=v if k in seen else none) for k, v in levels.items())
             parts.append(self.say("by_level", levels=told))
         if outcome is Outcome.FAILS and zeta >= 1.0:
             low, least = min(levels.items(), key=lambda item: item[1])
