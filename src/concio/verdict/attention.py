@@ -21,6 +21,10 @@ from concio.verdict.connection import apart
 from concio.verdict.lost_loads import lost_loads
 from concio.verdict.odd_weights import odd_weights
 
+ALMOST = "almost made, but not made or made only in part"
+"""What is said of joints that were not made, and of nothing else."""
+SO_WITH = "This is so with the joints that were made."
+"""Goes before that where a structure does not stand."""
 MOST_PLACES = 3
 """More joints that were not made than this are counted in a sentence; 'concio check' names every one."""
 PARALLEL = 1e-6
@@ -99,7 +103,7 @@ def joints_not_made(detection: Detection) -> tuple[str, ...]:
     more = f" and {len(misses) - len(places):,} more" if len(misses) > len(places) else ""
     sorts = "" if len(kinds) == 1 else " (" + ", ".join(f"{n:,} {kind}" for kind, n in kinds.items()) + ")"
     return (
-        f"{counted(len(misses), 'joint')} almost made, but not made or made only in part{sorts}: "
+        f"{counted(len(misses), 'joint')} {ALMOST}{sorts}: "
         f"{'; '.join(places)}{more}: 'concio check --all' names each",
     )
 

@@ -8,7 +8,7 @@ from concio.display import Units, counted, number
 from concio.model.self_weight import weight_groups, weightless
 from concio.problem.tolerances import CERTIFIED
 from concio.solvers.path.record import Outcome as Ended
-from concio.verdict.attention import attention, joints_not_made
+from concio.verdict.attention import SO_WITH, attention, joints_not_made
 from concio.verdict.question import Question, question_of
 from concio.verdict.unseen import unseen
 from concio.verdict.verdict import Outcome, Verdict
@@ -143,7 +143,9 @@ def _answer(found: PathResult, outcome: Outcome) -> str:
         parts.append(f"Never applied: {', '.join(never)}.")
     gone = _broken(found)[:-1] if found.outcomes[-1] is Ended.BROKEN else _broken(found)
     parts += [f"{_capital(line)}." for line in gone]
-    parts += [f"{_capital(line)}." for line in joints_not_made(found.assembly.detection)]
+    missing = joints_not_made(found.assembly.detection)
+    parts += [SO_WITH] if missing and outcome is Outcome.FAILS else []
+    parts += [f"{_capital(line)}." for line in missing]
     return " ".join(filter(None, parts))
 
 

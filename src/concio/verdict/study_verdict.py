@@ -10,6 +10,7 @@ import numpy as np
 
 from concio.contact.factors import load_factor
 from concio.display import number
+from concio.verdict.attention import ALMOST, SO_WITH
 from concio.verdict.question import Acting, Question, Role
 from concio.verdict.unseen import unseen_words
 from concio.verdict.verdict import Outcome, Verdict
@@ -29,6 +30,7 @@ WORDS = {
     "no_coulomb_state": "without a Coulomb state",
 }
 """Verdicts of single runs in words."""
+DOES_NOT_STAND = ("no_equilibrium", "collapses")
 
 
 def study_verdict(study: StudyResult) -> Verdict:
@@ -54,12 +56,13 @@ def study_verdict(study: StudyResult) -> Verdict:
         status="done" if done else "incomplete",
         question=_question(study),
         headline=f"{runs}, each with an answer." if answered else f"{runs}, not all of which have an answer.",
-        answer=" ".join(filter(None, (f"{runs}: {verdict_counts(study)}.{early} {answers}", required_words(study)))),
+        answer=" ".join(filter(None, (f"{runs}: {verdict_counts(study)}.{early} {answers}", required_words(study),
+                                      *_not_made(study)))),
         proof="each row has the verdict of its own analyses; nothing is added to it",
         meaning="Every run is a row, whatever its outcome. A structure that is proven not to stand counts as worse "
         "than any "
         "number; a run without an answer widens the interval on both sides.",
-        limits=_bounds(study),
+        limits=(*_bounds(study), *(line for line in _odd(study) if ALMOST in line)),
         unchecked=tuple(unchecked),
         attention=(*_mixed(study), *_odd(study)),
     )
@@ -140,6 +143,15 @@ def _unanswered(study: StudyResult) -> list[str]:
         groups = ", ".join(asked.groups)
         found.append(f"reliability index of a multiplier of {number(asked.required)} of {groups}: {asked.why}")
     return found
+
+
+def _not_made(study: StudyResult) -> list[str]:
+    """Return that runs do not stand with the joints that were made, and which were not made in the first of them."""
+    for row in study.rows:
+        missing = [line for line in row.attention if ALMOST in line]
+        if missing and (row.fails or row.verdict in DOES_NOT_STAND):
+            return [SO_WITH, *(f"{line}." for line in missing)]
+    return []
 
 
 def required_words(study: StudyResult) -> str:
