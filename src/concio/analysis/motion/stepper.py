@@ -116,6 +116,7 @@ class Stepper:
             self._movable[own] = reference.mass[own]
         self._inverse_mass = np.append(1.0 / np.where(reference.mass > 0, reference.mass, np.inf), 0.0)
         self._matrices: dict[float, StepMatrix] = {}
+        self._gained: tuple[float, Array] | None = None
 
     def matrix(self, h: float) -> StepMatrix:
         """Return M/h + theta^2 h K with damping (N, N)."""
@@ -179,7 +180,7 @@ class Stepper:
             states.normal[k:] = ties.states()
         t0 = np.zeros((count, problem.dim))
         t0[:m] = memory.force
-        found = self.solver.step(problem, states, x0, t0)
+        found = self.solver.step(problem, states, self._guess(state, x0, h), t0)
         returned: Returned | None = None
         change = np.inf
         for _ in range(SWINGS):
@@ -226,6 +227,8 @@ class Stepper:
             works["overlap"] += float(memory_before.stored.sum()) - float(state.memory.stored.sum())
         new = self._moved(state, found.x, x, apart, turn, strain, h, velocity, spin, memory, tied)
         found = self._certified(found, state, new, memory_before, h, drive, returned or Returned())
+        gained = (found.x - x0) / h if self._gained is None or not joint.impact else self._gained[1]
+        self._gained = new.time, gained
         hard = rows.valid & ~joint.springy
         depth = float(np.maximum(-end[hard & data.active], 0.0).max(initial=0.0))
         hit = hard & (memory_before.force[:, 0] == 0) & (joint.gap > 0.5 * h * joint.y0[:, 0] - maker.joints.sag)
@@ -236,6 +239,12 @@ class Stepper:
         nearing = free & ~joint.struck & (parting[:, 0] < -speed)
         left = time_until(end, parting[:, 0], nearing)
         return new, StepReport(found, m, works, depth, struck, rows.frame, meets, part, left)
+
+    def _guess(self, state: MotionState, x0: Array, h: float) -> Array:
+        """Return velocities (N,) at the end of a step as if they went on as in the last one without impact."""
+        if not self.turns or self._gained is None or self._gained[0] != state.time:
+            return x0
+        return np.asarray(x0 + h * self._gained[1])
 
     def _inner(
         self, state: MotionState, h: float, strain: Array, x0: Array, x1: Array, turn: Turns

@@ -23,6 +23,7 @@ how forces are shifted.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -73,10 +74,16 @@ class PairLaws:
     def across(self, v: Array) -> Array:
         """Return the part (m, d-1) of tangential vectors that springs resist: all that sticks, across what slips."""
         found: Array = np.where(self.stick[:, None], v, 0.0)
-        if self.turns is not None:
-            e = self.direction
-            found = np.where(self.turns[:, None], v - dot(e, v)[:, None] * e, found)
-        return np.asarray(found)
+        k = self.turning
+        if len(k):
+            e, own = self.direction[k], v[k]
+            found[k] = own - dot(e, own)[:, None] * e
+        return found
+
+    @cached_property
+    def turning(self) -> Array:
+        """Numbers of the pairs whose slip may turn: few, where most of thousands stick."""
+        return np.zeros(0, dtype=np.intp) if self.turns is None else np.flatnonzero(self.turns)
 
     def imposed(self, t: Array) -> Array:
         """Return forces (m, d) with the components that the states prescribe set to what they prescribe."""
@@ -86,8 +93,10 @@ class PairLaws:
     def misfit(self, y_n: Array, y_t: Array, t_t: Array) -> tuple[Array, Array]:
         """Return by how much the gaps (m,) and slips (m, d-1) that are held are missed; t_t (m, d-1): friction."""
         gap = y_n - dot(self.wide, y_t) if self.opens else y_n
-        if self.turns is not None:
-            y_t = y_t + np.where(self.turns[:, None], self.turn[:, None], 0.0) * t_t
+        k = self.turning
+        if len(k):
+            y_t = y_t.copy()
+            y_t[k] += self.turn[k, None] * t_t[k]
         return np.where(self.closed, gap, 0.0), self.across(y_t)
 
     def blocks(self) -> Array:
@@ -98,10 +107,11 @@ class PairLaws:
         D = np.zeros((m, d, d))
         D[:, 0, 0], D[:, 1:, 0] = d_nn, d_tn
         stiff = np.where(self.stick, 1.0 / self.soft_t, 0.0)
-        if self.turns is not None:
-            stiff = np.where(self.turns, 1.0 / self.soft_t, stiff)
-            e = np.where(self.turns[:, None], self.direction, 0.0)
-            D[:, 1:, 1:] -= stiff[:, None, None] * e[:, :, None] * e[:, None, :]
+        some = self.turning
+        if len(some):
+            stiff[some] = 1.0 / self.soft_t[some]
+            e = self.direction[some]
+            D[some, 1:, 1:] -= stiff[some, None, None] * e[:, :, None] * e[:, None, :]
         for k in range(1, d):
             D[:, k, k] += stiff
         if self.opens:

@@ -209,7 +209,7 @@ class StepProblem:
             simple: Array = np.where(self.active, np.maximum(law, wrong), idle)
             return max(left, largest(simple)), simple
         glued = self.glued
-        slip = np.abs(y_t[:, 0]) if self.dim == 2 else np.linalg.norm(y_t, axis=1)
+        slip = sizes(y_t) if self.dilates else np.zeros(len(t))
         y_n = (y_n - np.where(cone.rough & ~glued, self.dilatancy * slip, 0.0)) / self.length
         ratio = self.force / self.length
         p = t_n / self.force
@@ -217,11 +217,11 @@ class StepProblem:
         with np.errstate(invalid="ignore"):
             strength = np.where(self.pinned, np.inf, cone.strength(t_n))
         trial = t_t - ratio * y_t
-        size = np.abs(trial[:, 0]) if self.dim == 2 else np.linalg.norm(trial, axis=1)
+        size = sizes(trial)
         outside = size > strength
         shrink = np.where(outside, np.where(outside, strength, 1.0) / np.where(outside, size, 1.0), 1.0)
         wrong = np.abs(t_t - shrink[:, None] * trial)
-        law = np.maximum(law, (wrong[:, 0] if self.dim == 2 else np.linalg.norm(wrong, axis=1)) / self.force)
+        law = np.maximum(law, sizes(wrong) / self.force)
         idle = np.maximum(np.abs(t_n), np.abs(t_t).max(axis=1)) / self.force
         laws: Array = np.where(self.active, law, idle)
         return max(left, largest(laws)), laws
@@ -258,6 +258,11 @@ class StepProblem:
             K=self.matrix.sparse, f=self.b, C_n=C_n, C_t=C_t, gap=self.gap[pick], laws=laws, R=sp.csc_array((n, 0)),
             bodies=np.array([0, n]), slip_origin=self.origin[pick], load=self.force,
         )  # fmt: skip
+
+
+def sizes(v: Array) -> Array:
+    """Return the lengths (m,) of tangential vectors (m, d-1)."""
+    return np.asarray(np.abs(v[:, 0]) if v.shape[1] == 1 else np.hypot(v[:, 0], v[:, 1]))
 
 
 def largest(v: Array) -> float:

@@ -16,7 +16,7 @@ from concio.problem.contact_problem import Array
 from concio.problem.pair_state import PairStates
 from concio.solvers.algebra.factor import Solves
 from concio.solvers.states.pair_laws import PairLaws, dot, side_by_side
-from concio.solvers.stepping.problem import Errors, StepProblem, largest
+from concio.solvers.stepping.problem import Errors, StepProblem, largest, sizes
 
 REFINED = 1e-13
 """Relative residual at which refinement stops."""
@@ -71,8 +71,8 @@ def across_slip(p: StepProblem, x: Array, t: Array, errors: Errors | None = None
     trial = t[:, 0] - y_n / np.where(p.flexibility[:, 0] > 0, p.flexibility[:, 0], 1.0)
     with np.errstate(invalid="ignore"):
         strength = p.cone.strength(np.clip(trial, -p.cone.tension, p.cone.cap))
-    beyond = _size(t[:, 1:] - y_t / unit[:, None]) - strength
-    beyond = np.where(beyond > 0, beyond, _size(y_t) / unit)
+    beyond = sizes(t[:, 1:] - y_t / unit[:, None]) - strength
+    beyond = np.where(beyond > 0, beyond, sizes(y_t) / unit)
     usable = (strength > 0) & np.isfinite(strength)
     return np.where(usable, unit * beyond / np.where(usable, strength, 1.0), np.inf)
 
@@ -110,11 +110,6 @@ def solve_states(
         x, t = x + dx, t + side_by_side(dt_n, dt_t)
     assert best is not None
     return best
-
-
-def _size(v: Array) -> Array:
-    """Return the lengths (m,) of tangential vectors (m, d-1)."""
-    return np.asarray(np.sqrt(dot(v, v)))
 
 
 def read_states(p: StepProblem, x: Array, t: Array, errors: Errors | None = None) -> PairStates:

@@ -104,9 +104,9 @@ class StepFactor:
         """
         before = self._assembled
         change = D if before is None else D - before[0]
-        some = np.flatnonzero(change.any(axis=(1, 2)))  # open pairs have none; from round to round few pairs change
+        some = _filled(change)  # open pairs have none; from round to round few pairs change
         if before is not None and 2 * len(some) > len(D):
-            before, change, some = None, D, np.flatnonzero(D.any(axis=(1, 2)))
+            before, change, some = None, D, _filled(D)
         data = self._products(change, some)
         data += self._of_matrix() if before is None else before[1]
         self._assembled = D.copy(), data
@@ -132,3 +132,8 @@ class StepFactor:
     def solve(self, b: Array) -> Array:
         """Return the solution for the last matrix factorised; ``b`` is (N,) or (N, k)."""
         return self.numeric.solve(b)
+
+
+def _filled(D: Array) -> Array:
+    """Return the numbers of blocks (m, d, d) with an entry that is not zero."""
+    return np.unique(np.flatnonzero(D.ravel()) // (D.shape[1] * D.shape[2]))
