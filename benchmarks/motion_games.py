@@ -175,9 +175,9 @@ def write(lines: list[str], version: str, seconds: float) -> None:
 Written by `benchmarks/motion_games.py --write`. Blocks of {size} on a floor, friction {FRICTION:g}, stand for
 {seconds:g} s: nothing should move. MuJoCo {version} (elliptic cones, its solver as it comes) lets bodies sink into each
 other by its contact parameters and lets what sticks creep; "stiffest" are the parameters that its step allows
-(`solref` of two steps, `solimp` 0.99 to 0.9999 over 0.01 mm). PyBullet has its own parameters as they come. Columns: how
-far a block has sunk and how far one has moved along the floor at most, and the largest mean speed of the second half;
-where that is above a metre the stack has fallen over, and off the floor. A stack of a hundred blocks sinks in concio
+(`solref` of two steps, `solimp` 0.99 to 0.9999 over 0.01 mm). PyBullet has its own parameters as they come. Columns:
+how far a block has sunk and how far one has moved along the floor at most, and the largest mean speed of the second
+half; above a metre the stack has fallen over, and off the floor. A stack of a hundred blocks sinks in concio
 by what its joints are lent, before the motion begins. Every step of concio is certified. Processor time, one
 thread, on a machine with other work.
 
