@@ -1,6 +1,6 @@
 """What steps of a motion in space cost: walls of rigid bricks at rest and shaken; a grid of blocks that is searched.
 
-    python benchmarks/motion_space.py [--seconds 5] [--only rest|shaken|heads|grid|profile]
+    python benchmarks/motion_space.py [--seconds 5] [--only rest|shaken|heads|facade|grid|profile]
 
 Bricks of 0.2 x 0.1 x 0.06 m in running bond, 15 courses of 20, stand on each other with head joints open (2,260 contact
 points) or closed. Times are CPU times of this process at 2 ms a step, the averages of what was computed.
@@ -12,7 +12,7 @@ import argparse
 import cProfile
 import pstats
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
@@ -37,7 +37,10 @@ def bricks(courses: int = 15, along: int = 20, open_heads: float = 0.01) -> conc
     )  # fmt: skip
 
 
-def shake(name: str, model: concio.Model, seconds: float, motion: dict[str, concio.Pulse] | None) -> None:
+Ground = Mapping[str, concio.Pulse | concio.Record]
+
+
+def shake(name: str, model: concio.Model, seconds: float, motion: Ground | None) -> None:
     """Run a motion and print what it cost."""
     begun = time.process_time()
     first = concio.dynamics(model, motion, duration=2e-3, step=2e-3, stop_overturned=False)
@@ -75,6 +78,25 @@ def grid(count: int = 22) -> None:
     )
 
 
+def noise(size: float, seed: int, seconds: float = 15.0) -> concio.Record:
+    """Return filtered noise about 2 Hz with a beginning and an end, of a largest acceleration [m/s2]."""
+    time_step, count = 0.01, round(seconds / 0.01)
+    at = np.arange(count) * time_step
+    frequency = np.fft.rfftfreq(count, time_step)
+    band = np.exp(-((np.log(np.maximum(frequency, 1e-3) / 2.0) / 0.7) ** 2))
+    raw = np.fft.irfft(np.fft.rfft(np.random.default_rng(seed).normal(size=count)) * band, count)
+    raw *= np.minimum(1.0, at) * np.minimum(1.0, (seconds - at) / 5.0)
+    return concio.Record(size * raw / np.abs(raw).max(), time_step)
+
+
+def facade() -> concio.Model:
+    """Return a facade of 6 m with two returns of 3 m, bonded at the corners."""
+    lines = [{"start": (0, 3), "end": (0, 0)}, {"start": (0, 0), "end": (6, 0)}, {"start": (6, 0), "end": (6, 3)}]
+    return concio.walls(
+        lines=lines, height=4.25, block_size=(0.75, 0.375, 0.25), block="rigid", unit_weight=20.0, friction=0.6
+    )
+
+
 def main() -> None:
     """Run all cases, or one."""
     sine = concio.Pulse("sine", 0.3 * 9.81, 0.5, cycles=20.0)
@@ -89,6 +111,10 @@ def main() -> None:
         "rest": lambda seconds: shake("300 bricks at rest", bricks(), seconds, None),
         "shaken": lambda seconds: shake("300 bricks, 0.3 g in two directions", bricks(), seconds, ground),
         "heads": lambda seconds: shake("300 bricks, heads closed", bricks(open_heads=0.0), seconds, ground),
+        "facade": lambda seconds: shake(
+            "facade with two returns, record of three components", facade(), seconds,
+            {"x": noise(2.45, 1), "y": noise(1.96, 2), "z": noise(0.98, 3)},
+        ),
         "grid": lambda seconds: grid(),
         "profile": profiled,
     }

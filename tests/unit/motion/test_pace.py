@@ -135,6 +135,13 @@ def test_what_falls_past_everything_ends_a_motion_that_began_as_described():
     assert "below everything in the model" in found.verdict.answer
 
 
+def test_blocks_that_begin_inside_each_other_are_refused_in_a_sentence():
+    model = blocks(((0.0, 0.0, 0.0), (1.0, 1.0, 1.0)), ((0.5, 0.0, 0.2), (1.5, 1.0, 1.2)))
+    with pytest.raises(concio.GeometryError, match="'b0' and 'b1' overlap") as caught:
+        concio.dynamics(model, duration=0.1, gravity=G)
+    assert "\n" not in str(caught.value)
+
+
 def test_a_motion_of_more_steps_than_can_be_kept_is_refused():
     model = blocks(((-0.1, -0.1, 0.0), (0.1, 0.1, 0.2)))
     with pytest.raises(concio.InputError, match=r"a motion of 1e\+09 s has 5e\+11 steps of 0.002 s"):
