@@ -203,7 +203,10 @@ def _name(t: Texts, found: Assessment, row: HandRow) -> str:
         text = t.words["a_load_on"].format(name=row.name, kind=kind, number=row.load + 1)
         return escape(text if row.own else t.words["a_taken"].format(what=text))
     key = {"weight": "a_weight_of", "tie": "a_tie_of", "joint": "a_slide_of"}[row.kind]
-    return t.say(key, name=row.name)
+    name = row.name
+    if row.kind == "joint":  # "-" stands for what does not move
+        name = " / ".join(t.words["a_still"] if part == "-" else part for part in name.split(" / "))
+    return t.say(key, name=name)
 
 
 def _judgement(t: Texts, found: Assessment, head: Head) -> str:
