@@ -21,6 +21,7 @@ from concio.contact.reference import Reference
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED, Discretisation
 from concio.kinematics.frames import tangents
+from concio.kinematics.spins import SpinAxes
 from concio.model.model import Tie
 from concio.problem.contact_problem import Laws
 
@@ -39,7 +40,7 @@ def add_ties(reference: Reference, pairs: Pairs, laws: Laws) -> tuple[Pairs, Law
     if not ties:
         return pairs, laws
     n, ends = len(ties), _ends(disc, ties)
-    bars, here = Ties.of(reference), reference.at_rest()
+    bars, here = _along_world_axes(Ties.of(reference), disc), reference.at_rest()
     span, length = bars.span(here.placement, here.strain)
     normals = -(bars.sign / length)[:, None] * span  # the force of a bar on b points back to a
     rows, _, _, _ = bars.rows(here.placement, here.strain)
@@ -67,6 +68,17 @@ def add_ties(reference: Reference, pairs: Pairs, laws: Laws) -> tuple[Pairs, Law
     tie_laws = Laws(zero, zero, zero, zero, 1.0 / stiffness, zero, np.array([t.strength for t in ties]))
     names = Laws.__dataclass_fields__
     return joined, Laws(*(np.concatenate([getattr(laws, name), getattr(tie_laws, name)]) for name in names))
+
+
+def _along_world_axes(bars: Ties, disc: Discretisation) -> Ties:
+    """Return ties whose rows turn bodies about the axes of the model, as statics does, not about their principal axes.
+
+    Principal axes come in the order of their moments: about them the moment of a tie stood at another axis.
+    """
+    if disc.dim == 2:
+        return bars
+    axes = SpinAxes(np.tile(np.eye(3), (len(disc.model.bodies), 1, 1)))
+    return replace(bars, a=replace(bars.a, axes=axes), b=replace(bars.b, axes=axes))
 
 
 def _ends(disc: Discretisation, ties: Sequence[Tie]) -> Array:
