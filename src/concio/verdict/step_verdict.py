@@ -92,7 +92,12 @@ def _answer(result: Result, question: Question) -> str:
     left_out = (
         *joints_not_made(result.assembly.detection), *odd_weights(result.model), *broken_words(result)
     )  # fmt: skip
-    return " ".join((text, *parts_told(result), *(f"{line[0].upper()}{line[1:]}." for line in left_out)))
+    return " ".join((text, *parts_told(result), *(_sentence(line) for line in left_out)))
+
+
+def _sentence(line: str) -> str:
+    """Return a finding with a capital and a stop; a question keeps its mark."""
+    return f"{line[0].upper()}{line[1:]}{'' if line.endswith('?') else '.'}"
 
 
 def broken_words(result: Result) -> tuple[str, ...]:
