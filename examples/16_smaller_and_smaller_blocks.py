@@ -1,4 +1,4 @@
-"""A wall of fixed outline with smaller and smaller blocks: its limit load comes down to that of the continuum.
+"""A wall of fixed outline with smaller and smaller blocks: its limit load approaches that of the continuum.
 
 A dry wall of 3.2 x 2.1 m, friction 0.65, pushed by a share of its weight. Large blocks interlock better than the
 material they stand for: taken for a homogenised continuum the wall would carry between 0.39 (a field of stresses

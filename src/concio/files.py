@@ -30,7 +30,7 @@ def check_regular(path: Path, *, hint: str | None = None, pipes: bool = False) -
     Raises
     ------
     InputError
-        There is nothing, a directory, a device, or something that cannot be looked at.
+        There is nothing, a directory, a device, or something that cannot be examined.
     """
     where = str(path)
     try:

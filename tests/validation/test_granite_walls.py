@@ -12,7 +12,7 @@ from concio.analysis.path import Stage, run_path
 from concio.solvers.path.record import Outcome
 
 
-@pytest.mark.long  # their bounds are looked at below
+@pytest.mark.long  # their bounds are examined below
 def test_rows():
     check(granite_walls.rows())
 

@@ -85,7 +85,7 @@ def twisting(assembly: Assembly, motion: Array, rule: int = CORNERS) -> Array:
         In space.
     motion : (N_all,) array
     rule : int
-        Index into :data:`concio.contact.pairs.CONTACT_MODELS`: which patches are looked at.
+        Index into :data:`concio.contact.pairs.CONTACT_MODELS`: which patches are examined.
     """
     pairs = assembly.pairs
     w_n, w_t = pairs.C_n @ motion, (pairs.C_t @ motion).reshape(-1, 2)

@@ -39,7 +39,7 @@ def export(
         str | None, typer.Option("--unit", help="Unit of a drawing; default that of the drawing read, else m.")
     ] = None,
     results: Annotated[
-        bool, typer.Option("--results", help="In a DXF drawing: the model as it was, and what was found on own layers.")
+        bool, typer.Option("--results", help="In a DXF drawing: the undeformed model, with results on separate layers.")
     ] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace an existing file.")] = False,
 ) -> int:

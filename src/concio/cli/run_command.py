@@ -31,7 +31,9 @@ def run(
     units: UnitsOf = None,
     let_go: Annotated[
         bool,
-        typer.Option("--let-go", help="Where the step stays undecided, let the structure go at rest and follow it."),
+        typer.Option(
+            "--let-go", help="If the step remains undecided, release the structure at rest and follow its motion."
+        ),
     ] = False,
     figures: Annotated[bool, typer.Option("--figures/--no-figures", help="Draw figures into --out.")] = True,
 ) -> int:

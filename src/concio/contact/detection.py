@@ -22,7 +22,7 @@ def default_tolerance(model: Model) -> float:
 def detect(model: Model) -> Detection:
     """Return the interfaces of a model with the report of what was dropped or overlaps.
 
-    Structures that stand apart are looked at one by one: the tolerance of each is 1e-6 of its own size, unless the
+    Structures that stand apart are examined one by one: the tolerance of each is 1e-6 of its own size, unless the
     model gives one.
     """
     geometry = GEOMETRIES[model.dim]

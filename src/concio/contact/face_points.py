@@ -31,7 +31,7 @@ class FacePoints:
     a, b : (m,) integer arrays
         Bodies; ``NOWHERE`` does not move.
     face : (m,) integer array
-        0 where the face belongs to ``a`` and the point to ``b``, 1 the other way round.
+        0 where the face belongs to ``a`` and the point to ``b``, 1 in the reverse case.
     point : (m, d) array
     normal : (m, d) array
         From a to b.

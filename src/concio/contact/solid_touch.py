@@ -81,7 +81,7 @@ class SolidToucher:
     near : (n, 2) integer array
         Points of one pair of bodies that may coincide.
     chosen : (m,) boolean array
-        Points that were valid when last looked at.
+        Points that were valid when last examined.
     joints : FaceJoints or None
         Whose points come last.
     joint : (q + r,) integer array

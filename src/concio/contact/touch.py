@@ -78,7 +78,7 @@ class Toucher:
     slack : float
         How far beyond the end of an edge a single corner still stands over it [m].
     inner : (2, f) boolean array
-        Whether lower and upper ends were corners of b when last looked at: where corners of both bodies nearly coincide
+        Whether lower and upper ends were corners of b when last examined: where corners of both bodies nearly coincide
         the choice stays what it was, for the two contact points differ by what the edges have sunk in.
     """
 

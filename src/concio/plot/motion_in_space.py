@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 Array = np.ndarray
 
 VIEW: Literal["axonometry"] = "axonometry"
-"""From where motions are looked at."""
+"""From where motions are examined."""
 
 POINTS = 800
 """Points along the longer side of a frame."""

@@ -12,7 +12,7 @@ from concio.kinematics.frames import cross
 Array = np.ndarray
 
 MOST_POINTS = 200_000
-"""Points of triangles that are looked at together."""
+"""Points of triangles that are examined together."""
 
 LONGER_SIDE = 2000
 """Points along the longer side of a picture; it is drawn at this size and shown at about half of it."""

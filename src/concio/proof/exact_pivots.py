@@ -20,7 +20,7 @@ from typing import Literal
 from concio.proof.exact_solve import Row, solve_exactly
 
 MOST_PIVOTS, FEW_PIVOTS = 30, 3
-"""Bases looked at, at most, and in any case."""
+"""Bases examined, at most, and in any case."""
 MOST_PIVOTED_ROWS = 500
 """Rows times bases at most beyond those few: each solves systems whose fractions have thousands of digits, and where
 three pivots do not decide, thirty hardly do."""

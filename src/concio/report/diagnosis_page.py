@@ -178,7 +178,7 @@ class DiagnosisReport:
         return f"<section><h2>{escape(self.words['next'])}</h2>{table}</section>"
 
     def trials(self) -> str:
-        """Return the choices of motions that were looked at, the best first."""
+        """Return the choices of motions that were examined, the best first."""
         accepted = {c.chosen for c in self.found.causes}
         names = [c.name for c in self.found.candidates]
         far = [t for t in self.found.trials if t.fit is not None]

@@ -238,7 +238,7 @@ def fragility(intensity: Array, failed: Array) -> Fragility:
         raise InputError(msg, hint="more runs between, or simply that threshold")
     if x[y].max() <= x[~y].min():
         msg = "runs fail below an intensity and hold above it: this is not a fragility curve"
-        raise InputError(msg, hint="is the event the other way round?")
+        raise InputError(msg, hint="is the event reversed?")
     logs = np.log(x)
     centre, width = float(logs.mean()), float(logs.std()) or 1.0
     t, sign = (logs - centre) / width, np.where(y, 1.0, -1.0)
@@ -252,7 +252,7 @@ def fragility(intensity: Array, failed: Array) -> Fragility:
     a, b = minimize(loss, np.array([0.0, 1.0]), jac=True, method="BFGS").x
     if not b > 0:
         msg = "failures grow rarer with the intensity: this is not a fragility curve"
-        raise InputError(msg, hint="is the event the other way round?")
+        raise InputError(msg, hint="is the event reversed?")
     line = a + b * t
     weight = np.exp(2.0 * norm.logpdf(line) - norm.logcdf(line) - norm.logsf(line))
     own = np.linalg.inv(np.array([[weight.sum(), (weight * t).sum()], [(weight * t).sum(), (weight * t**2).sum()]]))

@@ -283,7 +283,7 @@ class StudyResult(Shown):
 
 
 class _Read(dict[str, Any]):
-    """A row that notes whether an output without an answer was looked at."""
+    """A row that notes whether an output without an answer was examined."""
 
     unknown = False
 

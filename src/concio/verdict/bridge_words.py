@@ -22,7 +22,7 @@ ENGLISH: Mapping[str, str] = {
     "part": "x = {low} to {high}", "no_part": "none of it",
     "an_axle": "a heaviest axle of {axle}",
     "a_load": "a uniform load of {uniform}",
-    "head_holds": "The vehicle is carried at every position that was looked at.",
+    "head_holds": "The vehicle is carried at every position that was examined.",
     "head_fails": "The vehicle is not carried.",
     "head_open": "It was not established whether the vehicle is carried.",
     "fails": "{required} times the vehicle is not carried at x = {x}, travelling to the {way}: nothing is in "
@@ -47,13 +47,13 @@ ENGLISH: Mapping[str, str] = {
     "shares": "of the bound at the worst position {soil} % is due to the pressure of the soil and {spread} % to the "
     "spread of the load through the fill",
     "width": "a strip of {width} carries the vehicle: {by}",
-    "grid": "positions are {step} apart, at the worst {fine}; between them nothing was looked at",
+    "grid": "positions are {step} apart, at the worst {fine}; between them nothing was checked",
     "several": "Coulomb friction has no unique answer: other states may exist, and settlements or earlier loads may "
     "lead to them",
     "plane": "the model is plane: skew, torsion, spandrel walls and the way in which load spreads across the "
     "bridge are "
     "in the width alone",
-    "apart": "the second vehicle was looked at {count} distances from the first ({distances}); other distances, "
+    "apart": "the second vehicle was placed at {count} distances from the first ({distances}); other distances, "
     "and one vehicle alone, were not",
     "spandrels": "spandrel walls count by their weight alone",
     "brackets": "what Coulomb friction carries at most was sought at {count} positions only",

@@ -301,7 +301,7 @@ class _Words:
         return next(c.quantity for c in self.found.candidates if c.name == name)
 
     def unchecked(self) -> tuple[str, ...]:
-        """Return what would be expected and was not looked at."""
+        """Return what would be expected and was not examined."""
         found = self.found
         told = []
         if found.lost:

@@ -58,14 +58,14 @@ EN = {
     "proof_large": " At large displacements the last state to {residual}.",
     "meaning": "A cause is a motion of supports, or a change of loads, after which the model is in equilibrium and "
     "shows what was measured within the errors. It is one among the candidates that were given: what is not among "
-    "them was not looked at.",
+    "them was not examined.",
     "unseen": "not determined by these measurements: {motions} changes them by {change} errors in all",
     "unseen_part": "'{name}' by {motion}",
     "addition": "Less simple, but clearly better: {motions}; the misfit is then {misfit}.",
     "coarse": "with finer steps, a reading of the simplest cause changes by {change} errors: give more steps",
     "orders": "where its motions come one after the other instead of together, a reading changes by {change} errors",
     "together": "the motions are taken to have grown together, after all loads: another history may crack it otherwise",
-    "sparse": "causes of more motions than {size} were not looked at",
+    "sparse": "causes of more motions than {size} were not examined",
     "left": "{count} choices of motions were left after one state, which missed by over {far} times what is allowed",
     "left_one": "one choice of motions was left after one state, which missed by over {far} times what is allowed",
     "lent": "hard joints between rigid blocks were given a compliance of {size} m/kN: without it their forces are not "

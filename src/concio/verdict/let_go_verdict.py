@@ -18,34 +18,34 @@ if TYPE_CHECKING:
 NEAR = 0.1
 """Share of the width of a body by which it may have moved where what is at rest is still the structure described."""
 
-ASKED = "; let go at rest with its masses, does it come to rest?"
+ASKED = "; released at rest with its masses, does it come to rest?"
 HEADLINES = {
-    Outcome.HOLDS: "Let go, it comes to rest close to where it was described.",
-    Outcome.INCOMPLETE: "Let go, it comes to rest elsewhere.",
-    Outcome.FAILS: "Let go, it was seen to fall.",
-    Outcome.MOVING: "Let go, it still moves where the calculation ends.",
+    Outcome.HOLDS: "Released at rest, it comes to rest close to where it was described.",
+    Outcome.INCOMPLETE: "Released at rest, it comes to rest elsewhere.",
+    Outcome.FAILS: "Released at rest, it falls.",
+    Outcome.MOVING: "Released at rest, it still moves where the calculation ends.",
     Outcome.UNDECIDED: "It is not known whether the loads are carried.",
 }
 MEANINGS = {
     Outcome.HOLDS: (
         "No equilibrium in one step from rest was found, and none was shown to be impossible. So the structure was "
-        "let go at rest and followed at large displacements, with its masses, impacts and friction. It came to rest, "
+        "released at rest and followed at large displacements, with its masses, impacts and friction. It came to rest, "
         "and an equilibrium was certified where its bodies then stand."
     ),
     Outcome.INCOMPLETE: (
-        "The structure was let go at rest and followed at large displacements. It came to rest, but bodies have moved "
-        "so far that what stands there is no longer the structure that was described."
+        "The structure was released at rest and followed at large displacements. It came to rest, but bodies have "
+        "moved so far that what stands there is no longer the structure that was described."
     ),
     Outcome.FAILS: (
-        "The structure was let go at rest and followed at large displacements. It was seen to fall. That is one "
-        "motion, computed in steps: it does not exclude an equilibrium that another history reaches."
+        "The structure was released at rest and followed at large displacements. It falls in the calculation. That is "
+        "one motion, computed in steps: it does not exclude an equilibrium that another history reaches."
     ),
     Outcome.MOVING: (
-        "The structure was let go at rest and followed at large displacements as long as was to be spent on it. It "
+        "The structure was released at rest and followed at large displacements for the work allowed. It "
         "neither came to rest nor fell."
     ),
     Outcome.UNDECIDED: (
-        "The structure was let go at rest, but its motion could not be followed to an end that shows anything."
+        "The structure was released at rest, but its motion could not be followed to an end that shows anything."
     ),
 }
 STATUSES = {
@@ -116,19 +116,19 @@ def _seen(found: LetGo) -> str:
     most = f"'{name}' has moved by up to {units.text('motion', far, 3)}, {number(100 * far / width, 3)} % of its width"
     if motion.fallen:
         said = motion.fallen[0] + (f", and {len(motion.fallen) - 1} more" if len(motion.fallen) > 1 else "")
-        return f"Let go at rest it was seen to fall: after {time} {said}."
+        return f"Released at rest it falls: after {time} {said}."
     if motion.rests:
         give = ""
         if motion.lent_compliance:
             sunk = units.text("motion", found.sunk, 2)
             give = f" That is shown for joints between rigid blocks that give way by up to {sunk}, not for hard ones."
-        rests = f"Let go at rest it comes to rest after {time}, in an equilibrium that was certified there"
+        rests = f"Released at rest it comes to rest after {time}, in an equilibrium that was certified there"
         return f"{rests}: {most}.{give}"
     if motion.ending.name == "UNSOLVED":
-        return f"Let go at rest it could be followed for {time} only: no step, however small, satisfies its equations."
+        return f"Released at rest it was followed for {time} only: no step, however small, satisfies its equations."
     turned = float(np.rad2deg(motion.largest_rotation[1]))
     return (
-        f"Let go at rest it still moves after {time}, at up to {number(found.speed, 3)} m/s: {most}, and "
+        f"Released at rest it still moves after {time}, at up to {number(found.speed, 3)} m/s: {most}, and "
         f"'{motion.largest_rotation[0]}' has turned by up to {number(turned, 3)} degrees. Whether it comes to rest or "
         "falls is not known."
     )

@@ -189,7 +189,7 @@ def _proof(found: PushResult) -> str:
 def _meaning(found: PushResult) -> str:
     return (
         "Every state of the curve is in equilibrium where the bodies stand, under the loads that act as they are and "
-        "the multiplied one. Between two states nothing was looked at, but for ties: where they yield and break is "
+        "the multiplied one. Between two states nothing was checked, but for ties: where they yield and break is "
         "located. Beyond the last state nothing is said."
     )
 

@@ -28,7 +28,7 @@ ASKED = {
     "run_path": "equilibrium along a load path",
     "push": "a capacity curve at large displacements",
     "dynamics": "a motion in time",
-    "let_go": "whether a structure that is let go at rest comes to rest",
+    "let_go": "whether a structure that is released at rest comes to rest",
     "homogenise": "the moduli of a periodic cell",
     "strength": "the strength of a periodic cell",
     "strain_path": "a path of strains and stresses of a periodic cell",

@@ -26,7 +26,7 @@ from concio.window.toml_places import places
 HOLDS = 12.0
 """A page that has not been heard of for so long has given the pen back [s]."""
 LOOK_EVERY = 1.0
-"""The file on the disk is looked at as often as this [s]."""
+"""The file on the disk is examined as often as this [s]."""
 MOST_NAMES = 300
 Answer = dict[str, Any]
 

@@ -484,8 +484,8 @@ def test_a_structure_that_does_not_stand_is_told_before_anything_is_sought() -> 
 
 def test_how_many_motions_were_looked_at_together_is_told_where_there_are_more() -> None:
     few = diagnosed(flat_arch(), spread_cracks(0.01), [GIVES])
-    assert not [line for line in few.verdict.limits if "were not looked at" in line]
+    assert not [line for line in few.verdict.limits if "were not examined" in line]
     many = diagnosed(flat_arch(), spread_cracks(0.01), [GIVES, OTHER, SINKS, TURNS])
     looked = max(len(t.chosen) for t in many.trials)
     assert 0 < looked < 4
-    assert f"causes of more motions than {looked} were not looked at" in many.verdict.limits
+    assert f"causes of more motions than {looked} were not examined" in many.verdict.limits

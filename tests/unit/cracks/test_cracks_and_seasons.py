@@ -53,7 +53,7 @@ def test_a_cold_arch_is_not_taken_for_one_whose_abutment_gave_way() -> None:
     measured = cracks(model)
     assert measured[0].value == pytest.approx(-ALPHA * COLDER * 6.0, rel=1e-3)  # as if its span were wider
     alone = concio.diagnose(model, measured, [GIVES], large=False)
-    assert causes(alone) == {("left gives way",)}  # what is not a candidate is not looked at
+    assert causes(alone) == {("left gives way",)}  # what is not a candidate is not examined
     both = concio.diagnose(model, measured, [GIVES, COLD], large=False)
     assert causes(both) == {("left gives way",), ("colder",)}
     assert both.verdict.status == "several_causes"

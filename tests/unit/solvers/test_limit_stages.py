@@ -191,7 +191,7 @@ def test_the_answer_stands_before_the_numbers(wall: concio.Model, tmp_path: Path
 
 
 def test_load_steps_halve_towards_a_multiplier_that_failed(monkeypatch) -> None:
-    """Far steps fail from half of the bound on, near ones from 0.8 on: found to 1/64 of the bound, little in vain."""
+    """Far steps fail from half of the bound on, near ones from 0.8 on: found to 1/64 of the bound, few that fail."""
     size = {"length": 0.5, "height": 1.0, "block_size": (0.5, 1.0), "mesh_size": 0.5}
     dead, live = dead_and_live(concio.assemble(concio.wall(friction=0.9, horizontal=1.0, **size)), "live")
     bound, step, tried, again = 0.5, stepping._step, [], []

@@ -107,7 +107,7 @@ def odd(text: str) -> set[str]:
 def test_every_command_with_json_is_asked() -> None:
     commands = typer.main.get_command(app).commands  # type: ignore[attr-defined]
     told = {name for name, command in commands.items() if any("--json" in p.opts for p in command.params)}
-    assert told - {"verify"} == set(ASKS), "a command whose JSON was not looked at"
+    assert told - {"verify"} == set(ASKS), "a command whose JSON was not examined"
     assert set(WRONG) == set(ASKS) - {"check"}
 
 

@@ -102,7 +102,7 @@ MAKE: dict[str, Callable[[], Any]] = {
 
 def test_every_class_with_a_verdict_is_shown_by_it() -> None:
     own = {name for name, bases, _ in classes() if "Shown" in bases} - {"Model"}
-    assert own == set(MAKE), "a result whose view was not looked at"
+    assert own == set(MAKE), "a result whose view was not examined"
     told = {name for name, bases, has in classes() if has and "Protocol" not in bases}
     assert told == own, "a class with a verdict of its own that notebooks show without it"
 

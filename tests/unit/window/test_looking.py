@@ -1,4 +1,4 @@
-"""What answers are looked at by: motions, numbers, and the list of those that are kept."""
+"""What answers are viewed with: motions, numbers, and the list of those that are kept."""
 
 from __future__ import annotations
 

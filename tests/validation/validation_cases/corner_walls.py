@@ -2,7 +2,7 @@
 
 A facade along y with returns along x, fixed ground, rigid bricks, contact at the corners of each patch. The multipliers
 of associated flow were computed beforehand by an independent program from the same description (facade x in [0, 1];
-even courses: the facade runs from corner to corner, returns start behind it; odd courses the other way round; runs are
+even courses: the facade runs from corner to corner, returns start behind it; odd courses are reversed; runs are
 cut into bricks of 2 from their start). Forces and mechanism of each are rechecked from the original data. Friction
 along the returns holds the facade: outward it falls with a part of them, and less friction holds less of them.
 """

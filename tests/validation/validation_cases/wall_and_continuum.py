@@ -5,7 +5,7 @@ their strength: stresses and mechanism of the continuum both give the exact numb
 material of :math:`|\sigma_1 - \sigma_2| \le 2c` (a polygon of 24 sides around Mohr's circle), enclose Prandtl's
 :math:`(2 + \pi) c` under a strip.
 
-*Halved blocks.* The limit load of a dry wall of 3.2 x 2.1 m comes down to that of the continuum; what is left goes with
+*Halved blocks.* The limit load of a dry wall of 3.2 x 2.1 m approaches that of the continuum; what is left goes with
 the size of the blocks. So does the difference of displacements between bonded blocks and the continuum.
 
 *The paper's panel* hangs between two walls. With all joints closed and stuck, blocks and continuum agree. With

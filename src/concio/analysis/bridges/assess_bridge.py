@@ -77,7 +77,7 @@ def assess_bridge(
         A vehicle of the library that is on the bridge together with the first, or "same"; its axles alone count. The
         answer is for both, at the distance at which they are worst.
     apart : sequence of float
-        Distances between the reference points of the two that are looked at [m].
+        Distances between the reference points of the two that are examined [m].
     settled : mapping of str to float, optional
         Downward settlement of fixed bodies by name, for a second working state [m].
     span_rise : float, optional

@@ -56,7 +56,7 @@ class BridgeResult(Shown):
     required : float
         Load factor that was asked for.
     standings : tuple of Standing
-        Every position that was looked at, by direction and from left to right.
+        Every position that was examined, by direction and from left to right.
     brackets : tuple of Bracket
         Of the worst positions, the worst first.
     coulomb : tuple of Coulomb
@@ -81,7 +81,7 @@ class BridgeResult(Shown):
     fine : float
         Distance to which the worst positions were refined [m].
     apart : mapping of float to float
-        Of two vehicles, the least multiplier for each distance between them that was looked at [m].
+        Of two vehicles, the least multiplier for each distance between them that was examined [m].
     """
 
     model: Model

@@ -180,7 +180,7 @@ class Sweep:
 
     @property
     def directions(self) -> tuple[str, ...]:
-        """Directions of travel that are looked at: one where the vehicle is the same both ways."""
+        """Directions of travel that are examined: one where the vehicle is the same both ways."""
         vehicle = replace(self.vehicle, loaded=None)
         if vehicle.direction != "both":
             return (vehicle.direction,)

@@ -79,7 +79,7 @@ def diagnose(
     most : int
         Maximum number of motions tried together.
     beyond : int
-        How many motions more than the simplest cause has are looked at.
+        How many motions more than the simplest cause has are examined.
     confidence : float
         Of the set of causes and of every interval.
     method : {"events", "steps"}, optional

@@ -1,4 +1,4 @@
-"""What a diagnosis gives: the causes within the errors, what was looked at, and what to do next."""
+"""What a diagnosis gives: the causes within the errors, what was examined, and what to do next."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ class Diagnosis(Shown):
     doubts : tuple of Doubt
         Measurements that all others contradict, each with the cause that then remains.
     trials : tuple of Trial
-        Every choice of candidates that was looked at, with its best fit.
+        Every choice of candidates that was examined, with its best fit.
     nearest : Cause or None
         The best fit, where none is within the errors.
     unseen : tuple of Unseen

@@ -52,7 +52,7 @@ class Future:
     limit : float
         Times the motion so far beyond which none was found; inf where all were found that were looked for.
     asked : float
-        Times the motion so far that were looked at.
+        Times the motion so far that were examined.
     residual : float
         Worst relative violation of the equations in the last state that was found.
     another : float

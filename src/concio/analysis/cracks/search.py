@@ -1,7 +1,7 @@
 """Which candidates explain the measurements: every choice of a few, from the fewest on; and which measurement is odd.
 
 A choice is a cause where its misfit is within the errors: below the quantile of chi2 with as many degrees of freedom as
-there are measurements more than motions. Choices that contain a cause are not looked at: they explain no more
+there are measurements more than motions. Choices that contain a cause are not examined: they explain no more
 with more. Where a measurement spoils an otherwise good choice it is named, with the mistake that would explain it.
 """
 
@@ -20,7 +20,7 @@ from concio.problem.solution import Progress, ProgressCallback
 Array = np.ndarray
 
 HOPELESS = 4.0
-"""A misfit without a measurement, to first order, that is this many times the one allowed is not looked at further."""
+"""A misfit without a measurement, to first order, that is this many times the one allowed is not examined further."""
 SURE = 2.0
 """Times the change of a reading in finer steps that is allowed for where a choice is turned down on coarse ones."""
 CLEAR = 4.0
@@ -29,7 +29,7 @@ CLEAR = 4.0
 
 @dataclass(frozen=True, eq=False)
 class Trial:
-    """A choice of candidates that was looked at.
+    """A choice of candidates that was examined.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ class Found:
     spoiled : tuple of Fit
         Causes within the errors where a measurement is left out.
     trials : tuple of Trial
-        Every choice that was looked at.
+        Every choice that was examined.
     """
 
     accepted: tuple[Fit, ...]
@@ -84,7 +84,7 @@ def search(
     most, beyond : int
     confidence : float
     coarse : sequence of Trial
-        What a search with coarser paths looked at: its fits are begun with, and those far off are taken as they are.
+        What a search with coarser paths examined: its fits are begun with, and those far off are taken as they are.
     change : float
         How much finer steps changed the readings of the best of these, root of the sum of squares in errors: by so
         much the root of its misfit changes at most. Twice as much is allowed for the others.

@@ -1,4 +1,4 @@
-"""What is looked at while bodies move: points, reactions, openings of joints, energies."""
+"""What is examined while bodies move: points, reactions, openings of joints, energies."""
 
 from __future__ import annotations
 

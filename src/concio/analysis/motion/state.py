@@ -38,7 +38,7 @@ class Memory:
     slid : (m, d-1) array
         Total plastic slip so far, along the tangents [m].
     area : (m,) array
-        On which the springs of compliant joints stand, zero before they were first looked at [m2].
+        On which the springs of compliant joints stand, zero before they were first examined [m2].
     sunk : (m,) array
         Normal deformation of these springs, negative where they are pressed [m].
     stored : (m,) array

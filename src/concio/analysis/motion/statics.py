@@ -1,7 +1,7 @@
 r"""Equilibrium of bodies that have moved far: small displacements from where they stand, until nothing moves any more.
 
 Where they stand the displacement to equilibrium is that of :mod:`concio.analysis.motion.small_displacements`; the
-bodies are moved by it and everything is looked at again, until it vanishes. Where a displacement controls the load, the
+bodies are moved by it and everything is examined again, until it vanishes. Where a displacement controls the load, the
 multiplier follows from it: x is piecewise linear in lambda, and the slope of the present piece is one more solve. The
 displacement is that on which the load works, or that of a point.
 """

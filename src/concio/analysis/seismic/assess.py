@@ -73,7 +73,7 @@ def assess(
         Which way the earthquake pushes: in the plane "right", "left" or "both", by default both; in space "+x", "-x",
         "+y", "-y", "both" (along x), "all", "corners" (along the diagonals), "every" (those as well) or a horizontal
         vector, by default all four. Where ``live`` is given, in the
-        plane "left" is against it; in space both ways along it are looked at.
+        plane "left" is against it; in space both ways along it are examined.
     live : str or sequence of str, optional
         Load groups that push, for a multiplier of one. By default "live" where the model has such a group and it
         pushes sideways; otherwise every weight of the model, imposed loads included, pushes sideways.

@@ -29,7 +29,7 @@ DIAGONALS = {a + b: (SPACE[a][0], SPACE[b][1]) for a in ("+x", "-x") for b in ("
 """Along both axes alike."""
 
 USUAL = {2: "both", 3: "all"}
-"""What is looked at unless another is asked for."""
+"""What is examined unless another is asked for."""
 
 ALONG = 0.999
 """Cosine above which a direction is that of the load that pushes."""

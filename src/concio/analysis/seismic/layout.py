@@ -25,7 +25,7 @@ WIDE = 0.01
 """What is free between two blocks is an opening from this share of the length of the structure on."""
 
 THIN = 1e-3
-"""Ranges between edges of blocks below this share of the structure, by which drawings are out, are not looked at."""
+"""Ranges between edges of blocks below this share of the structure, by which drawings are out, are not examined."""
 
 DEEPER = 1.5
 """Times the least that lies in blocks along the push from which on there is a return."""

@@ -43,7 +43,7 @@ APART = 1e-3
 """Heights that differ by less than this share of the facade are one."""
 
 NARROW = 0.02
-"""Strips narrower than this share of the facade are not looked at."""
+"""Strips narrower than this share of the facade are not examined."""
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 zeta_E follows from curves and spectra and is not a linear programme of any of them (for an associated multiplier,
 which is one, ``least`` of a limit result proves its answer). So amounts are tried from below, and each trial is a
 whole assessment: all mechanisms are sought, followed and checked again. What comes out is a bracket of two certified
-assessments, one that does not reach the value and one that does; amounts far below the first were looked at only where
+assessments, one that does not reach the value and one that does; amounts far below the first were examined only where
 they were tried.
 """
 

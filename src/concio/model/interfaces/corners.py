@@ -1,6 +1,6 @@
 """Corners in the plane that touch another body where no joint was made: every such place, with the bodies.
 
-Two outlines that touch do so at a corner of one of them. So every corner is looked at with the edges within its reach;
+Two outlines that touch do so at a corner of one of them. So every corner is examined with the edges within its reach;
 it is reported unless a joint of the same two bodies covers the place, another near miss tells of it, or it is a corner
 on a corner at which joints with other bodies connect the two (:mod:`concio.model.interfaces.meeting`).
 """

@@ -143,7 +143,7 @@ def attention(signal: Record | Pulse) -> str | None:
         return None
     return (
         f"record '{record.name}' has a peak of {peak:.3g} g, more than any earthquake: is it in m/s2 or cm/s2 "
-        "where g was meant, or the other way round?"
+        "where g was meant, or vice versa?"
     )
 
 

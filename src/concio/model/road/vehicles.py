@@ -20,7 +20,7 @@ WITHOUT_SOURCE = {
     "source of their axle loads",
     r"^ra ?\d+": "of Route Availability the library has 3, 5, 8 and 10, whose axle loads Network Rail publishes",
 }
-"""What a name is taken to mean that is looked for in vain, with the reason."""
+"""What a name is taken to mean that is not found, with the reason."""
 
 
 @cache

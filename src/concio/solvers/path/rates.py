@@ -36,7 +36,7 @@ CREEPING = 1e-5
 """Creep below this share of what the most loaded pair yields (a thousandth of it: of all creep) is rounding."""
 
 ROUNDING = 1e-13
-"""Rates of forces below this share of the rates of displacements are rounding, and the other way round (scaled)."""
+"""Rates of forces below this share of the rates of displacements are rounding, and vice versa (scaled)."""
 
 
 @dataclass

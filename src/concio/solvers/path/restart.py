@@ -46,7 +46,7 @@ LET_GO = (1e-5, NEXT, 1e-3, 1e-2)
 restarts following one another ask for comes first, then less.
 
 Forces out of balance by a millionth of the load are lost among the errors of the steps: a wall whose limit the path had
-reached was let go in vain.
+reached was released without a result.
 """
 
 TENTH = 0.1
@@ -114,7 +114,7 @@ def look_beyond(
     end : float
         Load parameter not to be passed.
     quick : bool
-        Whether only quick tries are made: the structure is known to move freely at the point, or was looked at before.
+        Whether only quick tries are made: the structure is known to move freely at the point, or was examined before.
     least : float
         Share of the present load below which increments are tried last, where restarts have followed one another
         closely.

@@ -20,7 +20,7 @@ from concio.problem.solution import Departure
 from concio.solvers.relaxation.unbounded_motion import verify_motion
 
 WAYS = 10.0 ** np.arange(0.0, -16.0, -3.0)
-"""Largest displacements [m] at which the motion is looked at, until its certificate holds at one.
+"""Largest displacements [m] at which the motion is examined, until its certificate holds at one.
 
 Small ones are known to more digits beside joints that give way by next to nothing, large ones open overlaps."""
 

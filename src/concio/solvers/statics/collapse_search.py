@@ -271,7 +271,7 @@ class _Search:
         if key not in self.tried:
             self.tried[key] = certify_collapse(self.problem, self.live, velocity, self.programmes, self.most)
         state = self.tried[key]
-        if state is not None and state.multiplier >= 0.0:  # the other way round is another load
+        if state is not None and state.multiplier >= 0.0:  # the reverse is another load
             self.states.append(state)
 
 

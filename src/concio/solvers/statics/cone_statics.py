@@ -2,7 +2,7 @@ r"""Statics with round cones: forces in balance, the mechanism that excludes the
 
 All of it is one programme, the largest multiplier of a load beside another
 (:mod:`concio.solvers.statics.cone_interior`), and nothing of what it says is believed: forces are brought into balance
-and looked at in the original data, motions likewise.
+and examined in the original data, motions likewise.
 
 *Existence.* Forces of one unit on every contact, t = (1, 0, 0), balance the load :math:`f_r = -R^T C^T t`. Let
 lambda be the largest multiplier of :math:`f_r + \lambda (f - f_r)`. It is at least 1 if and only if forces for f exist,

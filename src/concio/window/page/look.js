@@ -1,4 +1,4 @@
-/* Answers looked at: one played in the main picture, another beside it or above it, with their verdicts and numbers. */
+/* Answers on view: one is played in the main picture, another beside it or above it, with their verdicts and numbers. */
 import { t, el, field, digits, language } from "./words.js";
 import { call } from "./net.js";
 import { boxAround, canvas, draw, inSpace, view } from "./picture.js";
@@ -21,7 +21,7 @@ async function toldOf(key) {
   return told.get(key);
 }
 
-/* a new answer: it is the one that is looked at; its numbers go into the tables while the model is the one that was asked */
+/* a new answer: it is the one on view; its numbers go into the tables while the model is the one that was asked */
 let newest = 0;
 export async function answered(found) {
   const mine = (newest += 1);
