@@ -69,7 +69,7 @@ mutants: $(VENV)/.installed-dev
 	-OMP_NUM_THREADS=1 $(BIN)/python tests/mutants.py --count $(or $(COUNT),60) --minutes $(or $(MINUTES),inf)
 
 # The tests with the lowest versions that pyproject.toml allows, and with the newest Python there is (NEWEST=python3.14).
-NEWEST ?= $(shell for v in 15 14 13 12; do command -v python3.$$v && break; done)
+NEWEST ?= $(shell for v in 15 14 13 12; do python3.$$v -c "import sys; print(sys.executable)" 2>/dev/null && break; done)
 .PHONY: lowest newest
 lowest:
 	$(PYTHON) -m venv $(VENV)-lowest
