@@ -429,7 +429,9 @@ def test_the_command_that_is_asked_for_alone_says_what_it_says_among_all(words: 
 
     alone, among = (CliRunner().invoke(line, words) for line in (asked_of(words), app))
     assert (alone.exit_code, alone.output) == (among.exit_code, among.output)
-    assert len(asked_of(words).registered_commands) == (1 if words[:1] in (["run"], ["limit"]) else 20)
+    every = len(app.registered_commands)
+    assert every >= 20
+    assert len(asked_of(words).registered_commands) == (1 if words[:1] in (["run"], ["limit"]) else every)
 
 
 WAITING = """
