@@ -56,7 +56,7 @@ class StripTie:
     height : float
         Where that is least [m].
     by_height : mapping of float to float
-        The least force at each height that was looked at [kN].
+        The least force at each height that was examined [kN].
     before : float
         Multiplier without a tie, pushed outwards.
     reached : float
