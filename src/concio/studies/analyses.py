@@ -160,6 +160,13 @@ class Analyses:
         return attention(self.assembly) if self.made("assembly") else ()
 
     @property
+    def assumed(self) -> tuple[str, ...]:
+        """What of the model was not given."""
+        from concio.verdict.question import thickness_words
+
+        return thickness_words(self.model)
+
+    @property
     def unseen(self) -> tuple[str, ...]:
         """Bodies too light for the certificates of what was computed, where that says that something holds."""
         from concio.verdict.unseen import unseen_bodies

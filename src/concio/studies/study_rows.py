@@ -56,6 +56,8 @@ class Row:
         What is suspicious about the model of the run.
     unseen : tuple of str
         Bodies too light for the certificates of the run.
+    assumed : tuple of str
+        What of the model was not given, such as the thickness of a plane one.
     """
 
     index: int
@@ -68,6 +70,7 @@ class Row:
     acting: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     attention: tuple[str, ...] = ()
     unseen: tuple[str, ...] = ()
+    assumed: tuple[str, ...] = ()
 
     @property
     def failed(self) -> bool:
@@ -95,6 +98,7 @@ class Row:
             int(told["index"]), str(told["verdict"]), str(told["message"]), outputs, float(told["seconds"]),
             tuple(told.get("fails", ())), dict(told.get("errors", {})), dict(told.get("acting", {})),
             tuple(told.get("attention", ())), tuple(told.get("unseen", ())),
+            tuple(told.get("assumed", ())),
         )  # fmt: skip
 
 
@@ -187,7 +191,7 @@ def run_row(task: Task, index: int, numbers: tuple[float, ...], seed: int) -> Ro
         made.verdict, made.message = "time_limit", f"the run did not end within {task.time_limit:g} s"
     return Row(
         index, made.verdict, made.message, made.outputs, round(time.monotonic() - start, 6), tuple(made.fails),
-        made.errors, made.acting, made.attention, made.unseen,
+        made.errors, made.acting, made.attention, made.unseen, made.assumed,
     )  # fmt: skip
 
 
@@ -203,6 +207,7 @@ class _Made:
     acting: dict[str, dict[str, Any]] = field(default_factory=dict)
     attention: tuple[str, ...] = ()
     unseen: tuple[str, ...] = ()
+    assumed: tuple[str, ...] = ()
 
 
 def _fault(error: Exception) -> tuple[str, str]:
@@ -262,6 +267,7 @@ def _analyse(analyses: Analyses, wanted: tuple[Output, ...], row: _Made) -> None
     if row.errors:
         row.message = "; ".join(dict.fromkeys(text.split(": ", 1)[1] for text in row.errors.values()))
     row.acting, row.attention, row.unseen = analyses.acting, analyses.attention, analyses.unseen
+    row.assumed = analyses.assumed
 
 
 @contextmanager

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -189,7 +189,7 @@ def _question(study: StudyResult) -> Question:
         f"{names} in {len(study.sample)} runs that differ in {', '.join(v.name for v in study.sample.variables)} "
         f"({study.sample.design} sample, seed {study.sample.seed})"
     )
-    return Question(asked, _acting(study))
+    return Question(asked, _acting(study), _said_of_runs(study, "assumed"))
 
 
 def _acting(study: StudyResult) -> tuple[Acting, ...]:
@@ -242,7 +242,11 @@ def _mixed(study: StudyResult) -> tuple[str, ...]:
 
 def _odd(study: StudyResult) -> tuple[str, ...]:
     """Return what is suspicious about the models of the runs, with how many of them it is said of."""
-    said = Counter(line for row in study.rows for line in row.attention)
+    return _said_of_runs(study, "attention")
+
+
+def _said_of_runs(study: StudyResult, what: Literal["attention", "assumed"]) -> tuple[str, ...]:
+    said = Counter(line for row in study.rows for line in getattr(row, what))
     runs = len(study)
     found = [
         line if count == runs else f"in {count} of {runs} runs: {line}" for line, count in said.most_common(MOST_ODD)
