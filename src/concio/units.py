@@ -128,6 +128,10 @@ def degrees(value: float | str, *, where: str | None = None) -> float:
     return quantity(value, "number", where=where)
 
 
+LARGEST = 1e30
+"""No quantity of a structure is larger in kN and m, infinite ones apart: products of such numbers are still numbers."""
+
+
 def quantity(value: float | str, kind: str, *, where: str | None = None) -> float:
     """Return ``value`` as a number in kN and m.
 
@@ -143,8 +147,16 @@ def quantity(value: float | str, kind: str, *, where: str | None = None) -> floa
     Raises
     ------
     InputError
-        Not a number, a unit that is not known, or a unit of another kind.
+        Not a number, a number beyond any structure's, a unit that is not known, or a unit of another kind.
     """
+    number = _read(value, kind, where)
+    if LARGEST < abs(number) < math.inf:
+        msg = f"{number:g} is a number that no structure has"
+        raise InputError(msg, where=where, hint="look at the number, and at its unit")
+    return number
+
+
+def _read(value: float | str, kind: str, where: str | None) -> float:
     if not isinstance(value, str):
         try:
             number, unit = float(value), ""

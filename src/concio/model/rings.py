@@ -9,6 +9,7 @@ import shapely
 
 from concio.errors import GeometryError
 from concio.kinematics.mass import signed_area
+from concio.model.limits import LARGEST_COORDINATE
 
 Array = np.ndarray
 
@@ -26,6 +27,9 @@ def checked_ring(points: Array, what: str, where: str, *, clockwise: bool = Fals
     if not np.isfinite(ring).all():
         msg = f"{what} holds a coordinate that is not finite"
         raise GeometryError(msg, where=where)
+    if ring.size and np.abs(ring).max() >= LARGEST_COORDINATE:
+        msg = f"{what} holds a coordinate of {np.abs(ring).max():g} m"
+        raise GeometryError(msg, where=where, hint="no structure is that large: look at the number, and at its unit")
     if len(ring) > 1 and np.array_equal(ring[0], ring[-1]):
         ring = ring[:-1]
     if len(ring) < 3:
