@@ -86,6 +86,7 @@ MAKE: dict[str, Callable[[], Any]] = {
     "PushResult": lambda: concio.push(standing(), gravity=G, until=0.01),
     "RockingResult": lambda: concio.rock(standing(), step=0.05),
     "DynamicsResult": lambda: concio.dynamics(standing(), duration=0.02, step=0.01, gravity=G),
+    "LetGo": lambda: concio.let_go(concio.solve(pushed())),
     "Moduli": lambda: concio.homogenise(concio.cell(friction=0.6)),
     "StrengthDomain": lambda: concio.strength(concio.cell(friction=0.6), [(0.0, -1.0, 0.2)], coulomb=False),
     "CellPath": lambda: concio.strain_path(concio.cell(friction=0.6), [concio.Stage("press", {"stress yy": -10.0})]),
