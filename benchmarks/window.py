@@ -93,6 +93,8 @@ def tell(line: str) -> None:
 
 def main(drags: int, count: int) -> None:
     """Print the measures."""
+    if hasattr(os, "getloadavg"):
+        tell(f"{os.getloadavg()[1]:.1f} processes wanted to run on {os.cpu_count()} cores in the minutes before")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         shutil.copy(Path(concio.__file__).parent / "model" / "templates" / "arch.toml", folder)
@@ -168,14 +170,17 @@ def drag_on_sixty(client: Client, drags: int) -> None:
     client.call("open", name="sixty.toml")
     client.do({"do": "add", "to": "loads", "table": {**LOAD, "bodies": ["v20"], "at": middle_of(client, "v20")}})
     client.until("picture")
-    waited = []
+    waited, pid = [], client.server.session.look.pid or 0
+    used = processor(pid)
     for k in range(drags):
         body = f"v{20 + k % 12}"
         begun = time.perf_counter()
         found = client.call("drag", table=0, body=body, at=middle_of(client, body))
         waited.append(time.perf_counter() - begun)
         assert found["state"] == "done", found
-    tell(f"arch of 60 voussoirs: drag, median {1e3 * statistics.median(waited):.0f} ms of {drags}")
+    own = 1e3 * (processor(pid) - used) / drags
+    median = 1e3 * statistics.median(waited)
+    tell(f"arch of 60 voussoirs: drag, median {median:.0f} ms of {drags}; {own:.0f} ms of processor each")
 
 
 def middle_of(client: Client, body: str) -> list[float]:

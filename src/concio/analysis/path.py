@@ -29,7 +29,7 @@ from concio.contact.factors import load_factor
 from concio.errors import InputError, SolverError
 from concio.model.model import Model
 from concio.model.stages import ControlPoint, Stage
-from concio.problem.solution import ProgressCallback
+from concio.problem.solution import Progress, ProgressCallback
 from concio.solvers.methods import find
 from concio.solvers.path.path_state import LinearPath, PathState, at_rest, elastic_energy
 from concio.solvers.path.paths_apart import follow_parts
@@ -131,7 +131,8 @@ def run_path(
         path = _linear(assembly, factors, target)
         start = then = assembly.problem(factors)
         state = _at_rest(path) if state is None else replace(state, parameter=0.0)
-        found = _past_breaks(how, path, state, stage, (factors, target))
+        part = replace(how, progress=_of_all(progress, number, len(stages)))
+        found = _past_breaks(part, path, state, stage, (factors, target))
         first = len(steps)
         for before, after in zip((found.states[0], *found.states), found.states, strict=False):
             if after is found.states[0] and steps:
@@ -153,6 +154,20 @@ def run_path(
     return PathResult(
         assembly, tuple(stages), tuple(steps), tuple(events), tuple(outcomes), tuple(notes), direction
     )  # fmt: skip
+
+
+def _of_all(progress: ProgressCallback | None, number: int, count: int) -> ProgressCallback | None:
+    """Return a callback of one stage that tells the share of all stages; what is left stands in place of a residual."""
+    if progress is None:
+        return None
+    most = 0.0
+
+    def told(note: Progress) -> bool | None:
+        nonlocal most
+        most = max(most, min(note.share, 1.0))  # a share that is not known changes nothing
+        return progress(replace(note, method="path", residual=1.0 - (number + most) / count))
+
+    return told
 
 
 @dataclass(frozen=True, eq=False)

@@ -25,7 +25,7 @@ SOON = 5.0
 """Seconds after which the time left is reported."""
 
 
-SHARES = ("dynamics", "push", "assessment", "diagnose")
+SHARES = ("dynamics", "push", "assessment", "diagnose", "path")
 """Methods that report what is left to do in place of a residual."""
 LISTENER: ContextVar[Callable[[str, Any], None] | None] = ContextVar("listener", default=None)
 """Receives what is known on the way: ("progress", {...}), ("found", lines), ("verdict", verdict)."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
@@ -48,12 +49,13 @@ PROVEN_FAILURES = (Status.NO_EQUILIBRIUM, Status.COLLAPSES, Status.NO_COULOMB_ST
 @short_repr
 @dataclass(frozen=True)
 class Progress:
-    """What a progress callback receives."""
+    """What a progress callback receives; ``share`` is the share of the work that is done, where it is known."""
 
     method: str
     iteration: int
     residual: float
     message: str = ""
+    share: float = math.nan
 
 
 ProgressCallback = Callable[[Progress], "bool | None"]

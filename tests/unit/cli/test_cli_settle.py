@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
+from typing import Literal
 
 import jsonschema
 import numpy as np
@@ -11,6 +13,8 @@ import pytest
 
 import concio
 from commands import run
+from concio.cli.progress import Share
+from concio.problem.solution import Progress
 
 SQUEEZED = """
 title = "an elastic block between two walls, one of which moves in"
@@ -136,3 +140,23 @@ def test_loads_that_are_not_carried_leave_no_movement(tmp_path: Path) -> None:
     assert told["verdict"]["outcome"] != "holds"
     assert told["share"] == [0.0]
     assert told["movement"]["reached"] == 0.0
+
+
+@pytest.mark.parametrize("method", ["events", "steps"])
+def test_a_path_reports_the_share_of_all_its_stages(method: Literal["events", "steps"]) -> None:
+    """The share grows from the first stage to the end of the last: from it follows the time that is left."""
+    arch = concio.arch(span=4.0, ring=0.35, voussoirs=15, shape="segmental", rise=1.2, friction=0.7,
+                       block=concio.Elastic(E="5 GPa", nu=0.2, unit_weight=25.0))  # fmt: skip
+    spread = concio.Support("spread", "right abutment", displacement=(0.002, 0.0))
+    told: list[Progress] = []
+    found = concio.settle(replace(arch, supports=(spread,)), method=method, progress=told.append)
+    assert found.reached
+    done = [1.0 - note.residual for note in told]
+    assert done == sorted(done)
+    assert done[0] < 0.6
+    assert {note.method for note in told} == {"path"}
+    assert 0.9 < done[-1] <= 1.0
+    share = Share()
+    for note in told:
+        share.after(note)
+    assert share.best == pytest.approx(done[-1])

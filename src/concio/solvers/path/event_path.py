@@ -134,7 +134,8 @@ class _Follower(PathPoint):
                     known, direction = found, found.direction
                     if left <= length or (stop is not None and stop(after)):
                         return self.finish(states, events, Outcome.REACHED, direction)
-                    note = Progress("event-path", corner, 0.0, f"parameter {self.x[-1]:.6g}, {len(events)} events")
+                    told = f"parameter {self.x[-1]:.6g}, {len(events)} events"
+                    note = Progress("event-path", corner, 0.0, told, share=np.nan if self.driven else self.share_gone())
                     if progress is not None and progress(note):
                         return self.finish(states, events, Outcome.CANCELLED, direction)
                     continue

@@ -78,11 +78,17 @@ class PathPoint:
         self.slip, self.offset = start.slip[:, 0] / self.scaled.length, start.offset / self.scaled.length
         self.x = self.unknowns(start)
         self.until = until / self.unit
-        self.sense = 1.0 if self.until >= self.given() else -1.0
+        self.begun = self.given()
+        self.sense = 1.0 if self.until >= self.begun else -1.0
 
     def given(self) -> float:
         """Return the present value of what is controlled."""
         return float(self.control @ self.x)
+
+    def share_gone(self) -> float:
+        """Return the share of the way that is gone; nan where it has no end."""
+        whole = self.until - self.begun
+        return (self.given() - self.begun) / whole if whole and np.isfinite(whole) else np.nan
 
     def put_on_equations(self) -> None:
         """Correct the point where rounding has carried it off the equations of its states (little, or not at all)."""

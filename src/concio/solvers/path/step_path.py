@@ -138,7 +138,8 @@ def follow_in_steps(
         states.append(after)
         if abs(size) < abs(whole):
             size *= 2.0
-        if progress is not None and progress(Progress("steps", len(states), solution.certificate.worst)):
+        gone = (parameter - start.parameter) / (until - start.parameter) if until != start.parameter else 1.0
+        if progress is not None and progress(Progress("steps", len(states), solution.certificate.worst, share=gone)):
             outcome = Outcome.CANCELLED
             break
     last = states[-1].displacement - states[-2].displacement if len(states) > 1 else np.zeros(path.problem.unknowns)
