@@ -56,6 +56,23 @@ def test_step_and_limit_agree(name: str, share: float) -> None:
     assert concio.solve(alone).verdict.holds
 
 
+PUSHED = [concio.Stage("dead", {"dead": 1.0}, steps=2), concio.Stage("live", {"live": 1.0}, steps=6)]
+
+
+def test_the_path_of_a_tilted_cube_ends_where_slip_begins_by_less_than_rounding_in_small_steps() -> None:
+    """At 0.61 of the load two corners begin to slip by 1e-12 m: steps that are halved do not see it, whole ones do."""
+    path = concio.run_path(tilted_cube(0.97 * 0.6), PUSHED, progress=lambda done: done.iteration > 100)
+    assert path.verdict.holds, "cancelled: halved again and again for a change that halving does not find"
+
+
+@pytest.mark.long
+def test_the_path_of_a_tilted_cube_ends_where_it_slides() -> None:
+    path = concio.run_path(tilted_cube(1.03 * 0.6), STAGES)
+    assert path.verdict.outcome.value == "fails"
+    steepest = np.tan(np.arctan(0.6) + TILT)
+    assert 0.6 * (1 - 1e-4) <= 1.03 * 0.6 * path.steps[-1].factors["live"] <= steepest * (1 + 1e-6)
+
+
 def test_a_path_over_a_knife_edge_ends_where_the_load_step_does() -> None:
     assert concio.run_path(knife_edge(0.97 * 0.6), STAGES).verdict.holds
     # what slides has no next state: the path may say that it was lost there, never that it was carried
