@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import scipy.linalg as sl
 import scipy.sparse as sp
 
 import concio
@@ -17,10 +18,11 @@ from concio.solvers.statics.associated_limit import associated_limit
 from concio.solvers.statics.cone_interior import ConeAnswer, maximise
 from concio.solvers.statics.cone_programme import ConeProgramme, Pairs, Point
 from concio.solvers.statics.cone_statics import ConeStatics, _motions_of_bodies, _room
-from concio.solvers.statics.cone_step import Pivoted, Step
+from concio.solvers.statics.cone_step import Step
 from concio.solvers.statics.existence import statically_admissible
 from concio.solvers.statics.friction import smallest_friction
 from concio.solvers.statics.mechanism import absorbed_power, pair_velocities
+from concio.solvers.statics.pivoted import Mixed
 from contact_problems import rigid
 from contact_problems import wall as plane_wall
 from space_problems import Built, barrel, box, build, dome, on_floor, wall
@@ -246,7 +248,7 @@ def test_the_friction_of_a_tower_that_slides_is_found_without_pivoting(monkeypat
     Each step of a whole system with pivoting costs as much as fifty others: on a large tower the margin took most of
     the time of a limit load.
     """
-    monkeypatch.setattr(Pivoted, "__init__", lambda self, matrix: pytest.fail("a whole system was factorised"))
+    monkeypatch.setattr(Mixed, "factors", lambda *given: pytest.fail("a whole system was factorised"))
     tower = concio.tower(width=1.2, depth=1.2, height=1.8, block="rigid", friction=0.6, horizontal=0.1)
     found = concio.friction_margin(tower, live=None)
     assert found.settled
@@ -440,12 +442,31 @@ def test_the_way_to_the_edge_of_a_cone_keeps_its_digits_next_to_it(sense: float)
     assert reach(x, np.array([[0.5, sense * 0.25]])) == np.inf
 
 
-def test_factors_with_pivoting_solve_what_no_order_was_given_for() -> None:
-    """Also where the diagonal is zero and the pivots stand in other rows."""
+def test_the_equations_as_a_whole_are_solved_with_pivoting() -> None:
+    """Roots of many sizes, some of them nothing, some pairs that feel one block: against the dense equations."""
     rng = np.random.default_rng(3)
-    block = sp.random_array((30, 12), density=0.2, rng=rng) + sp.eye_array(30, 12)
-    inner = sp.block_array([[1e-9 * sp.eye_array(30), block], [block.T, None]])
-    border = sp.csc_array(rng.standard_normal((42, 1)))
-    matrix = sp.csc_array(sp.block_array([[inner, border], [border.T, None]]))
-    right = rng.standard_normal(43)
-    assert matrix @ Pivoted(matrix).solve(right) == pytest.approx(right, abs=1e-5 * np.abs(right).max())
+    m, r = 12, 24
+    C = sp.csr_array(np.kron(rng.random((m, 4)) < 0.6, np.ones((3, 6))) * rng.standard_normal((3 * m, r)))
+    g, right = rng.standard_normal(r), rng.standard_normal(3 * m + r + 1)
+    mixed = Mixed(C, m)
+    for _ in range(3):  # one order, other roots
+        F = rng.standard_normal((m, 3, 3)) * (10.0 ** rng.integers(-4, 4, m) * (rng.random(m) < 0.9))[:, None, None]
+        FC = sl.block_diag(*F).T @ C.toarray()
+        dense = np.zeros((right.size, right.size))
+        dense[: 3 * m, : 3 * m], dense[3 * m : -1, 3 * m : -1] = np.eye(3 * m), -1e-9 * np.eye(r)
+        dense[: 3 * m, 3 * m : -1], dense[3 * m : -1, : 3 * m] = FC, FC.T
+        dense[3 * m : -1, -1] = dense[-1, 3 * m : -1] = g
+        x = mixed.factors(F, g, 1e-9).solve(right)
+        assert dense @ x == pytest.approx(right, abs=1e-12 * np.abs(dense).max() * np.abs(x).max())
+
+
+def test_what_was_ordered_for_other_pairs_is_not_taken() -> None:
+    """Programmes share what only the velocities of their pairs decide: others have an order of their own."""
+    C = sp.csr_array(np.tile(np.eye(3), (2, 1)))
+    cone, bodies = Cone(*(x * np.ones(2) for x in (0.5, 0.0, 0.0, np.inf))), np.array([0, 3])
+    one = ConeProgramme(Pairs(C, cone, bodies))
+    stronger = ConeProgramme(Pairs(C.copy(), replace(cone, friction=0.9 * np.ones(2)), bodies))
+    assert stronger.ordered is one.ordered
+    assert stronger.factor is not one.factor
+    assert ConeProgramme(Pairs(sp.csr_array(2.0 * C), cone, bodies)).ordered is not one.ordered
+    assert ConeProgramme(Pairs(C, cone, np.arange(4))).ordered is not one.ordered

@@ -6,7 +6,10 @@ beta = (c + mu t_n, t_t) and w of the caps t_n <= N; see :mod:`concio.solvers.st
 
 from __future__ import annotations
 
+from collections import OrderedDict
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
+from hashlib import blake2b
 
 import numpy as np
 import scipy.sparse as sp
@@ -15,9 +18,13 @@ from concio.problem.cone import Cone
 from concio.problem.contact_problem import Array, Engine
 from concio.problem.tolerances import SMOOTH
 from concio.solvers.algebra.block_factor import BlockFactor
+from concio.solvers.statics.pivoted import Mixed
 
 START = 3.0
 """Size of slacks and multipliers at the start, the largest load on a block being one."""
+
+KEPT = 4
+"""Programmes whose order is kept: those that follow each other differ in their strengths and loads alone."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,6 +92,41 @@ class Point:
         )
 
 
+class Ordered:
+    """What only the velocities of the pairs decide: the order of Newton's equations, condensed and as a whole.
+
+    Parameters
+    ----------
+    pairs : Pairs
+    """
+
+    def __init__(self, pairs: Pairs) -> None:
+        r = pairs.C.shape[1]
+        self.pairs = pairs
+        self.factor = BlockFactor(sp.csr_array((r, r)), pairs.C, pairs.count, pairs.bodies, pairs.engine)
+
+    @cached_property
+    def mixed(self) -> Mixed:
+        """Newton's equations as a whole."""
+        return Mixed(self.pairs.C, self.pairs.count)
+
+
+_RECENT: OrderedDict[bytes, Ordered] = OrderedDict()
+
+
+def _ordered(pairs: Pairs) -> Ordered:
+    """Return the order of a programme, that of the last few as it was made."""
+    digest = blake2b(f"{pairs.C.shape} {pairs.count} {pairs.engine}".encode())
+    for part in (pairs.C.indptr, pairs.C.indices, pairs.C.data, pairs.bodies):
+        digest.update(np.ascontiguousarray(part).view(np.uint8).data)
+    key = digest.digest()
+    made = _RECENT.pop(key, None) or Ordered(pairs)
+    _RECENT[key] = made
+    while len(_RECENT) > KEPT:
+        _RECENT.popitem(last=False)
+    return made
+
+
 class ConeProgramme:
     """The pairs of one programme with the pattern of their equations, ordered once.
 
@@ -106,8 +148,8 @@ class ConeProgramme:
     def __init__(self, pairs: Pairs, *, pivoting: bool = True) -> None:
         self.pairs, self.pivoting = pairs, pivoting
         self.C, self.Ct = pairs.C, sp.csr_array(pairs.C.T)
-        r = pairs.C.shape[1]
-        self.factor = BlockFactor(sp.csr_array((r, r)), pairs.C, pairs.count, pairs.bodies, pairs.engine)
+        self.ordered = _ordered(pairs)
+        self.factor = self.ordered.factor.afresh()
         cone = pairs.cone
         self.capped, self.rough = cone.capped, cone.rough
         self.cap = np.where(self.capped, cone.cap, 0.0)
@@ -117,6 +159,11 @@ class ConeProgramme:
         self.line = ~self.rough | (cone.cohesion > 0)  # where the cone itself does not keep t_n >= 0
         self.degenerate = False
         self.count = max(int(self.line.sum()) + 2 * int(self.rough.sum()) + int(self.capped.sum()), 1)
+
+    @property
+    def mixed(self) -> Mixed:
+        """Newton's equations as a whole, in the order of elimination with pivoting."""
+        return self.ordered.mixed
 
     def rate(self, v: Array) -> Array:
         """Return C v (m, d)."""

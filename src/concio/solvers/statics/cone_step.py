@@ -10,12 +10,10 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import scipy.sparse as sp
-import scipy.sparse.linalg as sla
 
 from concio.problem.contact_problem import Array
 from concio.solvers.algebra.second_order_cone import Scaling, divide, product, reach, times
-from concio.solvers.algebra.sparse_factor import SingularMatrixError, nested_dissection
+from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.statics.cone_programme import ConeProgramme, Point
 
 SHARE = 0.99
@@ -32,33 +30,6 @@ PIVOTED = 60_000
 
 REFINEMENTS = 6
 """Largest number of times a direction is refined."""
-
-
-class Pivoted:
-    """Factors, with pivoting, of a square matrix whose last row and column are the border of a multiplier.
-
-    Columns are eliminated by nested dissection of the pattern of A'A, whatever rows the pivots are found in: a third of
-    the fill of the usual order of columns, and a quarter of the time.
-
-    Parameters
-    ----------
-    matrix : (N, N) CSC array
-    """
-
-    def __init__(self, matrix: sp.csc_array) -> None:
-        inner = sp.csr_array(matrix[:-1, :-1])
-        inner.data = np.ones_like(inner.data)
-        order, _ = nested_dissection(sp.csr_array(inner.T @ inner), group=1)
-        self.order = np.append(order, matrix.shape[0] - 1)
-        splu: Any = sla.splu
-        spec = "MMD_ATA" if np.array_equal(order, np.arange(order.size)) else "NATURAL"
-        self.factors = splu(sp.csc_matrix(matrix[:, self.order]), permc_spec=spec)
-
-    def solve(self, right: Array) -> Array:
-        """Return x (N,) with A x = right."""
-        x = np.empty_like(right)
-        x[self.order] = self.factors.solve(right)
-        return x
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,13 +130,8 @@ class Step:
     @cached_property
     def _mixed(self) -> Any:
         """Factors with pivoting of the system in dx, dv and the multiplier, whose condition is the square root."""
-        it, (m, d, _) = self.it, self.F.shape
-        roots = sp.bsr_array((self.F, np.arange(m), np.arange(m + 1)), shape=(m * d, m * d))
-        FC, g = sp.csr_array(sp.csr_array(roots.T) @ it.C), sp.csr_array(self.g[:, None])
-        loose = -PROXIMAL * sp.eye_array(self.g.size)
-        matrix = sp.block_array([[sp.eye_array(m * d), FC, None], [FC.T, loose, g], [None, g.T, None]], format="csc")
         try:
-            return Pivoted(sp.csc_array(matrix))
+            return self.it.mixed.factors(self.F, self.g, PROXIMAL)
         except RuntimeError:
             return None
 
