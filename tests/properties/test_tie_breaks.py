@@ -231,6 +231,46 @@ def test_a_tie_that_yields_is_said_to_yield():
     assert "crushed" not in states
 
 
+IN_SPACE = [pytest.param(seed, 3, marks=pytest.mark.long) for seed in range(4)]
+
+
+@pytest.mark.parametrize(("seed", "dim"), [*((seed, 2) for seed in SEEDS), *IN_SPACE])
+def test_the_load_at_which_a_tie_yields_is_located_within_a_step(seed, dim):
+    """A weaker tie yields on the way, whatever the steps; the other one, three times as stiff, takes the rest."""
+    rng = np.random.default_rng([dim, seed])
+    mu, k = float(rng.uniform(0.05, 0.3)), float(10 ** rng.uniform(3.5, 5))
+    most, factor = float(rng.uniform(0.5, 3.0)), float(rng.uniform(1.1, 3.0))
+    if dim == 2:
+        bodies = on_ground(box("b", -0.5, 0.5, 0, 1, **STONE), loads=(weight(),)).bodies
+    else:
+        ground = solid("ground", (-3, -3, -1), (3, 3, 0), kind="fixed")
+        bodies = (ground, solid("b", (-0.5, -0.5, 0), (0.5, 0.5, 1), **STONE))
+    low, mid = float(rng.uniform(0.001, 0.01)), (0.0,) * (dim - 2)
+    loads = (
+        Load("weight", (*(0.0,) * (dim - 1), -1.0)),
+        Load("point", (1.0, *(0.0,) * (dim - 1)), bodies=("b",), at=(0.5, *mid, low), group="live"),
+    )
+    rods = tuple(
+        Tie(name, "b", (-0.5, *mid, low), "", (-2.0, *mid, low), times * k, yield_force=force)
+        for name, times, force in (("weak", 1.0, most), ("strong", 3.0, 100.0 * most))
+    )
+    model = concio.Model(bodies, {"stone": Rigid(20.0)}, {"joint": JointLaw(mu)}, ties=rods, loads=loads)
+    at = mu * 20.0 + 4.0 * most
+    found = run_path(
+        model, [replace(DEAD, steps=2), Stage("pull", {"live": factor * at}, steps=int(rng.integers(1, 6)))],
+        method="steps",
+    )  # fmt: skip
+    assert found.complete
+    assert found.certified
+    (yields,) = [event for event in found.events if event.kind == "yields"]
+    assert yields.parameter * factor * at == pytest.approx(at, rel=1e-3)  # hard joints were given a compliance
+    state = found.result(yields.step)
+    assert state.ties.state[0] == "yields"
+    assert state.ties.tension == pytest.approx([most, 3.0 * most], rel=1e-6)
+    end = found.result().ties.tension
+    assert end == pytest.approx([most, factor * at - mu * 20.0 - most], rel=1e-3)
+
+
 @pytest.mark.parametrize("space", [False, True])
 def test_forces_of_ties_close_the_balance_for_the_reader(space):
     """Loads, reactions and ties to fixed points add up to nothing, in the table and in the report."""

@@ -22,7 +22,7 @@ from concio.analysis.entry_point import entry_point
 from concio.analysis.lent_compliance import SHEAR_TO_NORMAL, lent_assembly
 from concio.analysis.path_breaks import marked, released, without_gone
 from concio.analysis.path_result import NamedEvent, PathResult, PathStep, control_functional, named_event
-from concio.analysis.path_ties import breaking, tie_name, until_a_tie_breaks
+from concio.analysis.path_ties import begin_of_yield, breaking, tie_name, until_a_tie_breaks
 from concio.arguments import closest, strict
 from concio.contact.assembly import PRESTRESS, Assembly
 from concio.contact.factors import load_factor
@@ -231,8 +231,9 @@ def _walk(
             msg = f"stage '{stage.name}' is controlled by a displacement, which steps cannot follow"
             raise InputError(msg, hint="use method='events'")
         found = follow_in_steps(
-            path, state, until=until, steps=stage.steps, solver=find(solver), brittle=how.brittle, progress=progress
-        )
+            path, state, until=until, steps=stage.steps, solver=find(solver), brittle=how.brittle,
+            locate=begin_of_yield(assembly, path, find(solver)), progress=progress,
+        )  # fmt: skip
         return until_a_tie_breaks(assembly, path, found, *ends, solver=solver, exact=False)
     stop = breaking(assembly, *ends)
     exact = follow_parts(
@@ -247,7 +248,10 @@ def _walk(
         f"stage '{stage.name}': after {len(exact.events)} events, at {exact.end.parameter:.6g} of its load the path "
         f"was continued in {stage.steps} steps"
     )
-    rest = follow_in_steps(path, exact.end, until=until, steps=stage.steps, solver=find(solver), progress=progress)
+    rest = follow_in_steps(
+        path, exact.end, until=until, steps=stage.steps, solver=find(solver),
+        locate=begin_of_yield(assembly, path, find(solver)), progress=progress,
+    )  # fmt: skip
     rest = until_a_tie_breaks(assembly, path, rest, *ends, solver=solver, exact=False)
     return replace(found, states=exact.states).followed_by(rest)
 

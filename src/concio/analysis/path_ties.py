@@ -1,4 +1,4 @@
-"""Ties that break on a load path: the state in which the first of them does."""
+"""Ties that break or begin to yield on a load path: the state in which the first of them does."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from concio.analysis.tie_forces import break_elongations
 from concio.contact.assembly import Assembly
 from concio.problem.limits_of_work import BREAK_STEPS
 from concio.problem.solution import Solver
-from concio.problem.tolerances import BREAK_LOCATED, BROKEN_TIE
+from concio.problem.tolerances import BREAK_LOCATED, BROKEN_TIE, SLACK_TIE
 from concio.solvers.methods import find
-from concio.solvers.path.path_state import LinearPath, PathState
+from concio.solvers.path.path_state import CRUSHED, LinearPath, PathState
 from concio.solvers.path.paths_apart import between
 from concio.solvers.path.record import Event, Outcome
-from concio.solvers.path.step_path import StepPath, follow_in_steps
+from concio.solvers.path.step_path import Locate, StepPath, follow_in_steps
 
 Array = np.ndarray
 
@@ -124,4 +124,68 @@ def _located(
                 return best
         else:
             high, b = parameter, most
+    return best
+
+
+def begin_of_yield(assembly: Assembly, path: LinearPath, solver: Solver) -> Locate | None:
+    """Return a function that finds between two states of a path in steps the one in which a tie begins to yield.
+
+    None where no tie can.
+
+    Parameters
+    ----------
+    assembly : Assembly
+    path : LinearPath
+    solver : callable
+        Method of load steps.
+    """
+    ties, law = assembly.ties, path.problem.laws
+    ties = ties[np.isfinite(law.cap[ties])]
+    if not ties.size:
+        return None
+
+    def located(before: PathState, after: PathState) -> PathState | None:
+        new = ties[(before.contact[ties] != CRUSHED) & (after.contact[ties] == CRUSHED)]
+        if not new.size or before.parameter == after.parameter:
+            return None
+
+        def share(state: PathState) -> float:
+            """Return the force of these ties as if they had not yielded, as a share of what they carry at most."""
+            beyond = np.abs(state.offset - before.offset)[new] / np.maximum(law.normal_compliance[new], 1e-300)
+            return float(((state.normal_force[new] + beyond) / law.cap[new]).max())
+
+        return _first_yield(path, before, after, share, solver)
+
+    return located
+
+
+def _first_yield(
+    path: LinearPath,
+    before: PathState,
+    after: PathState,
+    share: Callable[[PathState], float],
+    solver: Solver,
+) -> PathState:
+    """Return the first state between two, by load steps from the first, in which the share of a tie reaches one."""
+    low, high, best = before.parameter, after.parameter, after
+    a, b = share(before), share(after)
+    start, begin = low, a
+    for k in range(BREAK_STEPS):
+        if b <= 1 + BREAK_LOCATED or abs(high - low) <= BREAK_LOCATED * abs(after.parameter - before.parameter):
+            break
+        aim = 1 + 0.5 * BREAK_LOCATED
+        part = 0.5
+        if k % 3 == 0 and b > a:
+            part = (aim - a) / (b - a)
+        elif k % 3 == 1 and a > begin:  # on from the states below: a tie that yields stretches faster
+            part = (aim - a) / (a - begin) * (low - start) / (high - low)
+        parameter = low + min(max(part, 0.001), 0.999) * (high - low)
+        step = follow_in_steps(path, before, until=parameter, steps=1, solver=solver)
+        if step.outcome is not Outcome.REACHED or len(step.states) != 2:
+            break
+        now = share(step.states[-1])
+        if now >= 1 - SLACK_TIE:
+            best, high, b = step.states[-1], parameter, now
+        else:
+            low, a = parameter, now
     return best

@@ -15,6 +15,7 @@ from concio.errors import InputError
 from concio.fem.discretisation import FIXED, RIGID, Discretisation
 from concio.kinematics.rigid import rigid_operator, swept
 from concio.model.model import Support
+from concio.problem.tolerances import NO_MOVEMENT
 from concio.representation import short_repr
 
 Array = np.ndarray
@@ -225,8 +226,8 @@ def points_held(disc: Discretisation, b: int, number: int) -> tuple[Array, Array
 
 
 def _moved(support: Support, point: Array, centroid: Array) -> Array:
-    moved: Array = np.array(support.displacement) + swept(np.asarray(support.rotation), point - centroid)
-    return moved
+    moved = np.array(support.displacement) + swept(np.asarray(support.rotation), point - centroid)
+    return np.where(np.abs(moved) < NO_MOVEMENT, 0.0, moved)
 
 
 def _near(points: Array, p: Array, q: Array, tolerance: float) -> Array:

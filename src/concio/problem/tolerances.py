@@ -15,6 +15,9 @@ import numpy as np
 SMOOTH = 1e-12
 """Friction coefficients up to this are none, and c - mu T below this share of c is zero."""
 
+NO_MOVEMENT = 1e-30
+"""A support that is moved by less than this stays where it is [m]."""
+
 # -- answers --------------------------------------------------------------------------------------------------------
 
 CERTIFIED = 1e-9

@@ -13,6 +13,7 @@ from concio.errors import InputError
 from concio.model.materials import Elastic
 from concio.model.model import Load, Support
 from models import box, model_of, on_ground, weight
+from pillars import pillar, sideways, turned
 
 STONE = {"kind": "rigid", "material": "stone"}
 LEFT, RIGHT, BASE = ((0, 0), (0, 0)), ((4, 0), (4, 0)), ((0, 0), (4, 0))
@@ -184,3 +185,16 @@ def test_contradictory_movements_of_a_rigid_body():
     stretch = (Support("A", "beam", LEFT), Support("B", "beam", RIGHT, displacement=(1e-3, 0)))
     with pytest.raises(InputError, match="contradictory"):
         assemble(beam(*stretch, stone=True))
+
+
+@pytest.mark.parametrize("power", [-300, -120, -31, -27, -20, -15, -14, -13, -9, -6])
+def test_a_support_that_moves_by_next_to_nothing_forces_nothing_together(power: int) -> None:
+    """A pillar on a floor that turns by 10^power degrees: it follows, with the forces of a floor that rests."""
+    still = concio.solve(concio.loads(pillar(sideways(0.1), more=turned(0.0))))
+    found = concio.solve(concio.loads(pillar(sideways(0.1), more=turned(10.0**power))))
+    assert found.verdict.attention == still.verdict.attention == ()
+    assert found.assembly.lent_compliance == 0.0
+    angle = 0.0 if power < -28 else np.deg2rad(10.0**power)  # a floor that moves by no length there is
+    assert np.abs(found.displacement).max() <= 2.0 * angle
+    assert found.displacement.any() == (power > -28)
+    assert found.solution.normal_force == pytest.approx(still.solution.normal_force, rel=1e-6)

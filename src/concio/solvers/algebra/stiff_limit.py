@@ -36,7 +36,8 @@ ROUNDS = 12
 """Largest number of repeated solves."""
 
 NOTHING = 1e-6
-"""Where all displacements fall below this share of those that the compliance allowed, nothing moves."""
+"""Where all displacements fall below this share of those that the compliance allowed, nothing moves unless a support
+does."""
 
 LOOSE = 1e-12
 """Stiffness, relative to the added one, of the springs that keep what nothing holds where it is."""
@@ -83,9 +84,11 @@ def _limit(hard: ContactProblem, lent: ContactProblem, answer: Solution) -> Solu
             u, t_n, t_t = _States(hard, lent, answer).limit(answer)
     except SingularMatrixError:
         return None
-    if float(np.abs(u).max(initial=0.0)) <= NOTHING * float(np.abs(answer.displacement).max(initial=0.0)):
-        u = still  # nothing moves: rounding must not be measured against itself
-    for forces in ((u, t_n, t_t), (still, answer.normal_force, answer.friction_force)):
+    small = float(np.abs(u).max(initial=0.0)) <= NOTHING * float(np.abs(answer.displacement).max(initial=0.0))
+    candidates = [(still if small else u, t_n, t_t), (still, answer.normal_force, answer.friction_force)]
+    if small and (hard.gap.any() or hard.slip_origin.any()):  # else rounding would be measured against itself
+        candidates.insert(0, (u, t_n, t_t))
+    for forces in candidates:
         found = judge(
             hard, *forces, method=answer.method, iterations=answer.iterations,
             factorisations=answer.factorisations + 1, trace=answer.trace, info=answer.info,

@@ -16,11 +16,12 @@ from concio.solvers.path.record import Event
 NORMAL = {
     (CLOSED, OPEN): "opens",
     (OPEN, CLOSED): "closes",
+    (OPEN, CRUSHED): "crushes",
     (CLOSED, CRUSHED): "crushes",
     (CRUSHED, CLOSED): "recovers",
     (CRUSHED, OPEN): "opens",
 }
-"""Words for changes of the normal state; what is not among them "changes"."""
+"""Words for changes of the normal state."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +59,7 @@ def changes(old: Moment, new: Moment, parameter: float, control: float, step: in
     for k in np.flatnonzero(old.states.differ(new.states)):
         was, now = int(old.states.normal[k]), int(new.states.normal[k])
         if was != now:
-            found.append(Event(parameter, control, int(k), NORMAL.get((was, now), "changes"), 0, step))
+            found.append(Event(parameter, control, int(k), NORMAL[was, now], 0, step))
         side = int(new.states.sign[k]) if new.grip[k] else 0
         before = int(old.states.sign[k]) if old.grip[k] else 0
         if side != before and new.grip[k]:

@@ -14,7 +14,7 @@ put off with the load growing meanwhile, the step after it is repeated at the sa
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -24,9 +24,8 @@ from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.parts import Part, connected_parts
 from concio.problem.solution import Progress, ProgressCallback, Solution, Solver, Status, judge
 from concio.solvers.path import near_forces
+from concio.solvers.path.event_words import NORMAL
 from concio.solvers.path.path_state import (
-    CLOSED,
-    CRUSHED,
     OPEN,
     STICK,
     LinearPath,
@@ -46,6 +45,10 @@ SMALLEST = 2.0**-12
 NEAR = 2.0**-3
 """Share of the step asked for above which a step that nothing solves near the last state is halved, not solved from
 nothing: of several equilibria that might end in another one."""
+
+
+Locate = Callable[[PathState, PathState], PathState | None]
+"""Returns of two states that a step joins the one between them in which the step is to end, or None."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +83,7 @@ def follow_in_steps(
     solver: Solver,
     refine: bool = True,
     brittle: bool = False,
+    locate: Locate | None = None,
     progress: ProgressCallback | None = None,
 ) -> StepPath:
     """Follow a path in load steps.
@@ -97,6 +101,8 @@ def follow_in_steps(
         Whether steps are halved at many changes of state (a failed step always is).
     brittle : bool
         Whether pairs lose tensile strength and cohesion once these are used up.
+    locate : callable, optional
+        Returns of two states that a step joins the one between them in which the step is to end, or None.
     progress : callable, optional
     """
     states, events = [start], list[Event]()
@@ -123,6 +129,8 @@ def follow_in_steps(
         after = state_of(
             path, parameter, solution.displacement, solution.normal_force, solution.friction_force, before=before
         )
+        if locate is not None and (earlier := locate(before, after)) is not None:
+            after, parameter = earlier, earlier.parameter
         changed = np.flatnonzero((before.contact != after.contact) | (_side(before) != _side(after)))
         here, there = (abs(p - start.parameter) for p in (before.parameter, parameter))
         sought = changed[here < seen[changed]]
@@ -255,10 +263,8 @@ def _named(before: PathState, after: PathState, k: int, step: int) -> list[Event
     """Return what pair k did in a step: change its contact, begin to slip, stick."""
     found = []
     was, now = int(before.contact[k]), int(after.contact[k])
-    kinds = {(CLOSED, OPEN): "opens", (OPEN, CLOSED): "closes", (CLOSED, CRUSHED): "crushes"}
     if was != now:
-        kind = kinds.get((was, now), "recovers" if was == CRUSHED else "changes")
-        found.append(Event(after.parameter, after.parameter, k, kind, 0, step))
+        found.append(Event(after.parameter, after.parameter, k, NORMAL[was, now], 0, step))
     side = int(_side(after)[k])
     if now != OPEN and side != int(_side(before)[k]):
         kind = "sticks" if side == STICK else "slips"
