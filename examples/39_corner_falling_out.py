@@ -2,7 +2,7 @@
 
 Two walls of dry blocks, 0.25 m thick and 2 m high, meet in a corner and are bonded there. The ground moves inwards
 along the diagonal with 0.6 g in each direction, so that the walls are thrown outwards. A wedge of both walls parts
-along the joints in steps, and what lies beyond turns after it.
+along the joints in steps, and what lies beyond turns after it. After 0.6 s no block stands where it stood.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ def main(figure: Path | None = None) -> dict[str, float]:
         height=2.0, block_size=(0.5, 0.25, 0.5), block="rigid", unit_weight=20.0, friction=0.9,
     )  # fmt: skip
     push = concio.Pulse("rectangular", 0.6 * 9.81, 0.4)
-    run = concio.dynamics(corner, {"x": push, "y": push}, duration=0.27, step=6e-3, stop_overturned=False)
+    run = concio.dynamics(corner, {"x": push, "y": push}, duration=0.6, step=6e-3, stop_overturned=False)
     print(run.verdict.sentence)
     moved = np.linalg.norm(run.end.centre - run.reference.disc.centroids, axis=1)
     free = run.reference.free
@@ -37,7 +37,7 @@ def main(figure: Path | None = None) -> dict[str, float]:
         sheet.savefig(figure)
     return {
         "gone": float((moved[free] > 0.1).sum()), "of": float(len(free)), "energy": run.energy.error,
-        "worst": run.certificate,
+        "worst": run.certificate, "falls": run.ending.name == "COMPLETE" and bool(run.fallen),
     }  # fmt: skip
 
 

@@ -177,7 +177,8 @@ def check_dome_under_shaking(found):
 
 
 def check_corner_falling_out(found):
-    assert 0.3 < found["gone"] / found["of"] < 1.0
+    assert found["falls"]  # followed to its end, not only to where steps become difficult
+    assert found["gone"] / found["of"] > 0.9
     assert found["worst"] <= 1e-9
     assert found["energy"] <= 1e-9
 

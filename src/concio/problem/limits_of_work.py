@@ -103,6 +103,9 @@ BREAK_STEPS = 60
 STEP_FACTORISATIONS = 14
 """Factorisations of a step at most before other methods are tried."""
 
+SOFTER_FACTORISATIONS = 300
+"""Factorisations of a step in space with joints that give way more, where rounds with its own do not arrive."""
+
 STEP_PIVOTS = 20
 """Pivots for each pair that are tried where nothing else decides a step."""
 

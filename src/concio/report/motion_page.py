@@ -54,6 +54,7 @@ HISTORY = (
 HOW = {
     "same states": "contact states unchanged",
     "active set": "active set",
+    "softer joints": "joints that give way more, less and less",
     "small problem": "small complementarity problem",
     "interior point": "interior point",
     "pivoting": "pivoting",

@@ -47,6 +47,22 @@ def test_the_law_of_an_impact_stays_as_it_is_while_what_turns_in_a_step_is_worke
     assert found.steps.residual.max() <= 1e-9
 
 
+def test_a_corner_thrown_outwards_is_followed_where_slips_send_newtons_method_in_circles():
+    # with the compliance of the joints alone, no step was found from 0.102 s on, and none smaller is tried here
+    corner = concio.walls(
+        lines=[{"start": (0, 0), "end": (1, 0)}, {"start": (0, 0), "end": (0, 1)}],
+        height=1.0, block_size=(0.5, 0.25, 0.5), block="rigid", unit_weight=20.0, friction=0.9,
+    )  # fmt: skip
+    push = concio.Pulse("rectangular", 0.8 * G, 0.4)
+    found = concio.dynamics(
+        corner, {"x": push, "y": push}, duration=0.12, step=6e-3, adaptive=False, stop_overturned=False
+    )
+    assert found.ending.name == "COMPLETE"
+    assert found.steps.shares()["softer joints"] > 0
+    assert found.steps.residual.max() <= 1e-9
+    assert found.energy.error <= 1e-10
+
+
 @pytest.mark.long
 def test_a_wall_whose_end_bricks_fall_is_followed_to_the_end_of_the_motion():
     found = shaken(5, 6, 0.4)

@@ -16,6 +16,7 @@ from concio.solvers.pivoting import sparse_lemke
 from concio.solvers.stepping.active_pairs import ActivePairs
 from concio.solvers.stepping.problem import StepProblem, StepSolution
 from concio.solvers.stepping.settle_step import LinearStep, settle
+from concio.solvers.stepping.softer_joints import by_softer_joints
 from concio.solvers.stepping.states import across_slip, halting, laws_of_step, read_states
 from concio.solvers.stepping.step_factor import StepFactor
 
@@ -83,6 +84,24 @@ class StepSolver:
 
     def _step(self, p: StepProblem, states: PairStates, x: Array, t: Array) -> StepSolution:
         """Solve a step of active pairs, by each means in its turn."""
+        found = self._rounds(p, states, x, t)
+        if found is not None and found.residual < STEP_SETTLED:
+            return found
+        if p.dim == 3 and found is not None:
+            found = by_softer_joints(p, found, x, t, self._again)
+            if found.residual < STEP_SETTLED:
+                return found
+        return self._fallback(p, found)
+
+    def _again(self, p: StepProblem, at: StepSolution) -> StepSolution:
+        """Return what rounds from a solution of nearly the same step find."""
+        begun = self.factor.count if self.factor else 0
+        found = self._rounds(p, at.states, at.x, at.t)
+        spent = self.factor.count - begun if self.factor else 0
+        return replace(found or replace(at, residual=np.inf), factorisations=spent)
+
+    def _rounds(self, p: StepProblem, states: PairStates, x: Array, t: Array) -> StepSolution | None:
+        """Return the best that rounds of Newton's method, or of the active set, find; None where there is nothing."""
         assert self.factor is not None
         factor, begun = self.factor, self.factor.count
         best: StepSolution | None = None
@@ -124,7 +143,7 @@ class StepSolver:
                 if any(not new.differ(s).any() for s in seen):
                     break
             states = new
-        return self._fallback(p, best)
+        return best
 
     def response(self, p: StepProblem, states: PairStates, f: Array) -> Array:
         """Return the change of x (N,) under a change f (N,) of the right-hand side, in given states."""
