@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import gc
 import importlib
 import importlib.util
@@ -11,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import typer.testing
 from hypothesis import settings
 
 import samples
@@ -22,6 +24,8 @@ def pytest_configure(config: pytest.Config) -> None:
     A run then judges the code, not the draw, and what passed here passes elsewhere; ``make fresh`` looks for new cases.
     """
     samples.whole = "not long" not in config.getoption("markexpr").replace("long or not long", "")
+    # The runner of typer makes all commands anew at every call, which took six parts in a hundred of all tests.
+    typer.testing._get_command = functools.cache(typer.testing._get_command)
     # No deadline: a busy machine is not a fault of what is tested.
     settings.register_profile("same", deadline=None, derandomize=True)
     settings.register_profile("fresh", deadline=None, print_blob=True)

@@ -4,7 +4,7 @@ python tests/mutants.py [--count 60] [--seed 0] [--jobs 2] [--only PATH] [--name
 
 Each mutant changes one operator, comparison, constant or function of one line (a minus for a plus, a
 maximum for a minimum, a factor of two where a number is not a threshold: between
-a thousandth and a million); the tests of its room are run on a copy of the
+a thousandth and a million); the tests of its room, quick ones first, are run on a copy of the
 package that holds it, until one fails. A test that fails without the mutant, too, has killed nothing: the run ends, and
 says which. Survivors are defects of the tests, or mutants that change nothing: those stand
 in ``mutants_kept.toml`` with the reason. Any other survivor makes the exit code 1. With ``--named`` those of
@@ -44,7 +44,8 @@ KEPT = HERE / "mutants_kept.toml"
 SECONDS = 90
 """A mutant whose tests take more time of a processor is dead: it made something endless."""
 TRACED_SECONDS = 300
-"""Time of a processor for the tests that ran the line of a mutant; where it is over, the mutant has survived."""
+"""Time of a processor for the long tests of a room, and for the tests that ran the line of a mutant; where it is over,
+the mutant has survived."""
 MOST_TRACED = 1000
 """Tests that ran the line of a mutant, beyond which no other is tried."""
 
@@ -219,7 +220,11 @@ def killed_by(mutant: Mutant, package: Path, traces: Traces | None = None) -> st
     whole = target.read_text(encoding="utf-8")
     target.write_text(mutant.put_in(whole), encoding="utf-8")
     try:
-        test = first_failure(mutant.tests or tests_for(mutant.path), package)
+        tests = mutant.tests or tests_for(mutant.path)
+        test = first_failure(tests, package)
+        if not test:  # the long tests of its room: only what fails has seen it
+            test = first_failure(tests, package, TRACED_SECONDS, "long")
+            test = test if test.startswith(("FAILED ", "ERROR ")) else ""
         if not test and traces is not None:
             test = first_failure(traces.tests_of(mutant)[:MOST_TRACED], package, TRACED_SECONDS)
             test = test if test.startswith(("FAILED ", "ERROR ")) else ""
@@ -230,10 +235,10 @@ def killed_by(mutant: Mutant, package: Path, traces: Traces | None = None) -> st
     return test
 
 
-def first_failure(tests: Sequence[str], package: Path, seconds: int = SECONDS) -> str:
+def first_failure(tests: Sequence[str], package: Path, seconds: int = SECONDS, select: str = "not long") -> str:
     """Return the first test that fails with a copy of the package, how else they ended, or nothing."""
     env = {**os.environ, "PYTHONPATH": str(package.parent), "OMP_NUM_THREADS": "1"}
-    options = ["-x", "-q", "--no-header", "-p", "no:cacheprovider", "-m", "not long", "--tb=no"]
+    options = ["-x", "-q", "--no-header", "-p", "no:cacheprovider", "-m", select, "--tb=no"]
     done = subprocess.run(
         [sys.executable, "-c", LIMITED, str(seconds), *options, *tests],
         cwd=HERE.parent, env=env, capture_output=True, text=True, check=False,
@@ -248,7 +253,7 @@ def first_failure(tests: Sequence[str], package: Path, seconds: int = SECONDS) -
 @cache
 def fails_anyway(test: str, package: Path) -> bool:
     """Return whether a test fails with the package as it is."""
-    return bool(first_failure([test], package))
+    return bool(first_failure([test], package, TRACED_SECONDS, "long or not long"))
 
 
 def main() -> int:

@@ -34,6 +34,7 @@ def test_the_drawing_is_what_the_script_draws(tmp_path):
     assert drawn(tmp_path / "facade.dxf") == drawn(EXAMPLES / "facade.dxf")
 
 
+@pytest.mark.long
 def test_it_is_read_as_the_wall_it_means():
     facade = script()
     model = concio.load(EXAMPLES / "facade.toml")

@@ -73,6 +73,7 @@ def test_the_path_of_a_tilted_cube_ends_where_it_slides() -> None:
     assert 0.6 * (1 - 1e-4) <= 1.03 * 0.6 * path.steps[-1].factors["live"] <= steepest * (1 + 1e-6)
 
 
+@pytest.mark.long
 def test_a_path_over_a_knife_edge_ends_where_the_load_step_does() -> None:
     assert concio.run_path(knife_edge(0.97 * 0.6), STAGES).verdict.holds
     # what slides has no next state: the path may say that it was lost there, never that it was carried

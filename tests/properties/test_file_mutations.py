@@ -7,6 +7,7 @@ import tomllib
 from importlib.resources import files
 from typing import Any
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -71,6 +72,7 @@ def read(text: str) -> concio.Model | concio.InputError:
         return error
 
 
+@pytest.mark.long
 @settings(max_examples=sample(40, 150), deadline=None)
 @given(mutated())
 def test_a_changed_file_is_a_model_or_a_message(data: dict[str, Any]) -> None:

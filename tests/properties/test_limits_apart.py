@@ -21,6 +21,7 @@ from samples import sample
 few = settings(max_examples=sample(2, 8), deadline=None)
 
 
+@pytest.mark.long
 @few
 @given(
     st.sampled_from([2, 2, 3]), st.sampled_from(["rigid", "elastic"]), st.sampled_from(["hard", "stiff"]),

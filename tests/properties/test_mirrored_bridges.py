@@ -28,6 +28,7 @@ def two_rings(x: float, *, cover: float, passive: float, friction: float = 0.16,
     return concio.limit(loaded, loaded.vehicle.group, path=False, steps=True, search=False)
 
 
+@pytest.mark.long
 @settings(max_examples=sample(1, 12), deadline=None)
 @given(st.floats(1.8, 2.6), st.floats(0.25, 0.6), st.floats(0.3, 1.0), st.floats(0.1, 0.4))
 @example(2.3, 0.25, 1.0, 0.16)

@@ -53,6 +53,7 @@ def compared(alone, both):
     return len(times)
 
 
+@pytest.mark.long
 @few
 @given(
     st.sampled_from(["rigid", "rigid", "elastic"]), st.sampled_from(list(LAWS)), st.floats(-3, 2), st.floats(-6, 6),

@@ -186,6 +186,7 @@ def test_forces_chosen_at_will_in_joints_that_give_way_are_not_certified(dim, k,
     assert found.complementarity > 1e-3
 
 
+@pytest.mark.long
 @few
 @example(3.0, 12.0, 0.03)
 @given(st.floats(3, 6), st.floats(7, 12), st.sampled_from([0.03, 0.3, 1.0]))

@@ -23,6 +23,7 @@ def numbers(found, names):
     return [k for k, b in enumerate(found.model.bodies) if b.name in names]
 
 
+@pytest.mark.long
 @few
 @given(
     st.sampled_from(["rigid", "rigid", "elastic"]), st.sampled_from(list(LAWS)), st.floats(-3, 2), st.floats(-6, 6),
@@ -52,6 +53,7 @@ def test_an_unconnected_body_changes_no_digit_of_a_push(kind, law, size, weight,
     assert events == [(e.step, e.kind, e.bodies) for e in alone.events]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("first", [False, True][: sample(1, 2)])
 def test_the_structure_with_the_least_peak_leads_and_the_other_is_unloaded(first):
     """A block 0.5 m x 2 m turns over at 0.25 and falls at 0.25 m; one of 1 m x 2 m beside it would at 0.5."""
@@ -74,6 +76,7 @@ def test_the_structure_with_the_least_peak_leads_and_the_other_is_unloaded(first
     assert led.ending is PushEnding.NO_EQUILIBRIUM
 
 
+@pytest.mark.long
 def test_what_leans_on_another_is_pushed_with_it():
     """A slender block turns over towards a stout one 0.25 m away, which then holds it up."""
     slender, stout = box(2, "slender", (0, 0), (0.4, 2)), box(2, "stout", (0.65, 0), (2.65, 2))

@@ -23,6 +23,7 @@ def test_no_measured_peak_lies_above_the_upper_bound(n):
     assert granite_walls.PEAKS[n] < granite_walls.bound(n)
 
 
+@pytest.mark.long
 def test_elastic_wall_snaps_and_carries_on():
     """At 20.9 kN a corner of the wall snaps; one step from rest carries more, and so must the path."""
     assembly = concio.assemble(granite_walls.model(100.0, elastic=True))

@@ -78,6 +78,7 @@ KNOWN = {"wall 2": (0.579999, 0.55742), "wall 5": (0.239643, 0.20863)}
 """Associated multiplier, and the local optimum known of the programme with complementarity constraints."""
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["wall 2", pytest.param("wall 5", marks=pytest.mark.long)])
 def test_the_search_for_collapse_states_is_at_least_as_low_as_known_local_optima(name):
     """From one start it ended at 0.558310 on wall 2 and at 0.213864 on wall 5; nothing shows that there is no lower."""

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import pytest
 from validation_cases import local_mechanisms
 from validation_cases.row import check
 
 
+@pytest.mark.long
 def test_rows() -> None:
     check(local_mechanisms.rows())

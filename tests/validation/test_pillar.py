@@ -11,6 +11,7 @@ from validation_cases.row import check
 import concio
 
 
+@pytest.mark.long
 def test_rows():
     check(pillar.rows())
 

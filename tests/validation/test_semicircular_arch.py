@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import pytest
 from validation_cases import semicircular_arch
 from validation_cases.row import check
 
 
+@pytest.mark.long
 def test_rows():
     check(semicircular_arch.rows())
 

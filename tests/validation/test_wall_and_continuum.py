@@ -20,6 +20,7 @@ def test_bounds_are_on_their_sides():
     assert high > 2 + np.pi
 
 
+@pytest.mark.long
 def test_an_arch_has_a_size_and_a_thrust_that_moduli_do_not_have():
     found = wall_and_continuum.panel()
     blocks, bonded, _ = found.elastic.settlements

@@ -103,6 +103,7 @@ def test_a_locked_load_depends_on_nothing() -> None:
         concio.limit(replace(model, loads=(*model.loads, down)), path=False, search=False).sensitivity()
 
 
+@pytest.mark.long
 def test_a_mechanism_of_an_assessment_in_closed_form() -> None:
     """The wall of the worked example: alpha_0 = (W t/2 + 10 x 0.45 + 6 x 0.4) / (W h/2 + 10 x 3 + 6 x 6)."""
     found = concio.assess(overturning(), site=site(), direction="left")
@@ -120,6 +121,7 @@ def test_a_mechanism_of_an_assessment_in_closed_form() -> None:
         assert text.count("<figure") == 5
 
 
+@pytest.mark.long
 def test_a_mechanism_that_slides_has_its_derivatives_by_virtual_work() -> None:
     """alpha_0 = mu; an upper bound alone, of dilatant joints, has none."""
     found = concio.assess(overturning(3, friction=0.08), site=site(), direction="left", levels=["SLV"])

@@ -80,6 +80,7 @@ def test_forces_that_are_not_determined_have_no_derivative_and_displacements_hav
     assert np.isfinite(found.above.displacement).all()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("language", "heading", "words"),
     [("en", "What this state depends on", "derivatives of the certified state"),

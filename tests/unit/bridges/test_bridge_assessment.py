@@ -299,6 +299,7 @@ def test_a_model_without_fill_or_vehicle_is_refused(tmp_path: Path) -> None:
     assert "no vehicle" in err
 
 
+@pytest.mark.long
 def test_the_same_fill_acts_in_one_step_in_a_path_and_in_a_push() -> None:
     """Soil presses in all of them: with it each carries what the ring alone does not."""
     model = placed(small(load=165.0), 0.7)
@@ -367,6 +368,7 @@ def two_spans() -> concio.Model:
     return with_vehicle(with_fill(made, FILL), Vehicle("one axle", (Axle(0.0, 10.0),)))
 
 
+@pytest.mark.long
 def test_a_second_vehicle_is_put_where_both_are_worst() -> None:
     model = two_spans()
     options = {"step": 0.6, "fine": 0.3, "worst": 1, "checked": 1, "sensitivity": False}

@@ -71,6 +71,7 @@ def test_the_datum_that_matters_most_is_told_in_a_sentence(
     assert numbers[:4] == pytest.approx([most.low, most.high, most.at_low, most.at_high], rel=1e-3)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("language", ["en", "it"])
 def test_the_report_holds_the_verdict_and_every_section(language: str, page_in: Callable[[str], str]) -> None:
     page = page_in(language)

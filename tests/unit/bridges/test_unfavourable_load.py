@@ -99,6 +99,7 @@ def test_the_mechanism_moves_the_loaded_part_down_and_nothing_else_of_the_road()
     )  # fmt: skip
 
 
+@pytest.mark.long
 def test_the_model_at_the_worst_position_has_the_load_that_the_search_found_and_is_saved_with_it() -> None:
     found = concio.assess_bridge(crossed(), step=0.4, fine=0.1, worst=1, checked=3, sensitivity=False)
     assert found.vehicle.loaded == found.worst.loaded

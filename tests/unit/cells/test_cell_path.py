@@ -69,6 +69,7 @@ def test_the_first_stretch_has_the_homogenised_moduli_and_tangents_follow():
     assert not path.moduli(-1).closed
 
 
+@pytest.mark.long
 def test_events_and_steps_give_one_answer():
     stages = ({"stress yy": -100.0}, concio.Stage("shear", {"strain xy": 1e-3}, steps=40))
     exact = concio.strain_path(RIGID, stages)

@@ -75,6 +75,7 @@ def test_a_ground_that_moves_and_turns_takes_the_wall_along_without_stress(stiff
     assert np.abs(found.stress).max() < 1e-6
 
 
+@pytest.mark.long
 def test_bonded_blocks_come_to_the_continuum_in_proportion_to_their_size():
     def make(n):
         law = concio.JointLaw(0.65, normal_stiffness=3e5 * n, tangential_stiffness=1.2e5 * n)
@@ -103,6 +104,7 @@ def test_sliding_on_the_base_is_exact_from_both_sides():
     assert found.proven == (True, True)
 
 
+@pytest.mark.long
 def test_crushing_under_pressure_is_exact_from_both_sides():
     law = concio.JointLaw(0.6, cohesion=50.0, tensile_strength=20.0, compressive_strength=3000.0)
     wall = concio.wall(length=2.0, height=1.0, block_size=(0.5, 0.25), block=STONE, friction=law, top_pressure=1.0)
@@ -112,6 +114,7 @@ def test_crushing_under_pressure_is_exact_from_both_sides():
     assert found.blocks.associated.multiplier == pytest.approx(3000.0, rel=1e-8)
 
 
+@pytest.mark.long
 def test_prandtls_strip_footing_is_enclosed():
     """(2 + pi) c on a half-space of |s_1 - s_2| <= 2 c, here a polygon of 12 sides around the circle of Mohr."""
     turn = 2 * np.pi * (np.arange(12) + 0.5) / 12

@@ -463,6 +463,7 @@ def test_a_reader_that_has_gone_changes_no_exit_code(panel: Path) -> None:
     assert (panel.parent / "result" / "summary.json").exists()
 
 
+@pytest.mark.long
 def test_interrupting_a_running_command(panel: Path) -> None:
     command = [sys.executable, "-c", WAITING, "run", str(panel), "--out", "result"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:

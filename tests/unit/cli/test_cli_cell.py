@@ -44,6 +44,7 @@ def test_the_template_is_a_cell_that_can_be_checked_and_homogenised(tmp_path, mo
     assert "sheared: The end asked for was reached." in out
 
 
+@pytest.mark.long
 def test_moduli_strength_and_directions_in_words(dry):
     code, out, _ = run("cell", dry, "--stress", "yy=-100", "--direction", "xy=1", "--direction", "xx=-1,yy=-1")
     assert code == 0

@@ -74,6 +74,7 @@ def test_limit_without_a_limit_or_a_load(tmp_path: Path) -> None:
     assert "there is no load group 'live'" in err
 
 
+@pytest.mark.long
 def test_path_names_events_and_ends_where_the_block_topples(slender: Path) -> None:
     stages = ("--stage", "dead=1", "--stage", "live=1", "--point", "b01,-0.1,1.0")
     code, out, err = run("path", slender, *stages, "--json")

@@ -68,6 +68,7 @@ def test_commands_that_print_json_can_be_quiet_and_those_that_solve_take_units()
             assert "--units" in options, name
 
 
+@pytest.mark.long
 def test_every_help_names_the_exit_codes() -> None:
     for name in COMMANDS:
         code, out, _ = run(name, "--help")
@@ -130,6 +131,7 @@ def test_an_error_keeps_to_the_schema_too(wall: Path) -> None:
             jsonschema.validate({k: v for k, v in told.items() if k != name}, schema)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("asked", [("prove", "--force"), ("run", "--method", "exhaustive"), ("limit",)])
 def test_a_process_that_prints_json_prints_nothing_else(asked: tuple[str, ...], tmp_path: Path) -> None:
     """A linear programming code of its own printed its name first, which a runner inside Python does not see."""

@@ -60,6 +60,7 @@ def squeezed(tmp_path: Path) -> Path:
     return file
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("amount", [1.0, 2.5])
 def test_a_wall_that_moves_in_presses_as_a_spring(squeezed: Path, tmp_path: Path, amount: float) -> None:
     """N = E A d / L with E = 1e6 kN/m2, A = 0.5 m2, L = 2 m; the weight of 20 kN goes down, nu = 0."""

@@ -136,6 +136,7 @@ def test_a_pier_that_sinks_and_turns_is_found_from_its_eight_widest_cracks_with_
     assert exact.certificate < 1e-9
 
 
+@pytest.mark.long
 def test_a_cause_at_the_end_of_a_long_descent_is_not_turned_down() -> None:
     """Joints begin to open late along the way: eight steps from the best single motion did not come there."""
     arch = concio.arch(

@@ -67,6 +67,7 @@ def test_a_namespace_holds_imports_alone_and_all_of_them(space: str) -> None:
     assert found == names_of(space)
 
 
+@pytest.mark.long
 def test_a_namespace_is_an_attribute_before_anyone_imports_it() -> None:
     code = "import concio; print(concio.generate.arch is concio.arch, concio.seismic.Site is concio.Site)"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -308,6 +308,7 @@ def _read(path: Path):
     return grid, vtk_to_numpy(grid.GetPoints().GetData()), arrays(grid.GetPointData()), arrays(grid.GetCellData())
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["panel", "mixed"])
 def test_vtk_reads_bodies(name: str, request: pytest.FixtureRequest, tmp_path: Path) -> None:
     result: Result = request.getfixturevalue(name)

@@ -127,6 +127,7 @@ def test_a_list_that_is_none_is_no_licence(tmp_path: Path, text: str) -> None:
     assert tree(place) == {"a.txt": "mine"}
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("blank_figures")
 def test_a_link_to_a_directory_stays_a_link(model: Path) -> None:
     real = model.parent / "disk" / "real"
@@ -141,6 +142,7 @@ def test_a_link_to_a_directory_stays_a_link(model: Path) -> None:
     assert [p.name for p in real.parent.iterdir()] == ["real"]
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("blank_figures")
 def test_the_working_directory_may_be_the_place(model: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (model.parent / "r").mkdir()
@@ -195,6 +197,7 @@ def test_what_another_machine_left_is_removed_after_a_day(tmp_path: Path) -> Non
     assert not foreign.exists()
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("blank_figures")
 def test_exports_never_replace_what_they_did_not_write(model: Path) -> None:
     assert run("run", model, "--out", "r", "--no-figures")[0] == 0
@@ -215,6 +218,7 @@ def test_exports_never_replace_what_they_did_not_write(model: Path) -> None:
     assert (model.parent / "tables" / "bodies.csv").read_text() == "mine"
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("blank_figures")
 def test_exports_into_a_result_go_when_it_goes(model: Path) -> None:
     assert run("run", model, "--out", "r", "--no-figures")[0] == 0

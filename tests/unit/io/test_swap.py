@@ -266,6 +266,7 @@ def test_processes_side_by_side_some_of_which_are_killed(tmp_path: Path) -> None
     assert tree(place) == {"a.txt": "after", "thesis.txt": "mine"}
 
 
+@pytest.mark.long
 def test_a_motion_is_read_whole_after_a_run_died_at_any_step(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     motions = [concio.push(standing(0.2, 1.0), step=0.1, until=until) for until in (0.05, 0.1)]
 

@@ -96,6 +96,7 @@ def test_a_roller_cannot_stand_askew() -> None:
         concio.place(structure(), turn=30.0)
 
 
+@pytest.mark.long
 def test_an_elastic_vault_keeps_its_mesh_when_mirrored() -> None:
     dome = concio.dome(span=4, ring=0.4, courses=2, blocks=6, oculus=1.0)
     for model in (concio.place(dome, mirror="x"), concio.place(dome, turn=20, axis=(0, 1, 1))):

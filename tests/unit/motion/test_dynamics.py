@@ -209,6 +209,7 @@ def test_a_tie_breaks_for_good():
     assert found.energy.error < 1e-10
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("damping", [{"stiffness_damping": 2e-4}, {"mass_damping": 20.0}][: sample(1, 2)])
 def test_rayleigh_damping_against_the_closed_form_of_a_damped_mode(damping):
     """A block in flight rings in its softest mode: q = v / w_d exp(-z w t) sin w_d t, z w = (alpha + beta w^2) / 2."""

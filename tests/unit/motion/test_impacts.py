@@ -48,6 +48,7 @@ def test_half_the_velocity_returns_to_a_quarter_of_the_height_at_first_order():
     assert off[1] < 6.5 * steps[1]
 
 
+@pytest.mark.long
 def test_restitution_over_random_drops():
     """Whatever falls from wherever: e squared of the height, to the first order of the step; no energy is made."""
     rng = np.random.default_rng(25)
@@ -89,6 +90,7 @@ def moment(found, state_velocity, spin, centre):
     return total
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(sample(1, 4)))
 def test_free_collisions_that_return_everything_keep_energy_and_angular_momentum(seed):
     found = collision(np.random.default_rng(seed), friction=0.0, restitution=1.0)
@@ -102,6 +104,7 @@ def test_free_collisions_that_return_everything_keep_energy_and_angular_momentum
     assert after == pytest.approx(before, abs=2e-4 * turns)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(sample(1, 6)))
 def test_impacts_never_give_energy(seed):
     rng = np.random.default_rng(100 + seed)

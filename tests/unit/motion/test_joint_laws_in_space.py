@@ -60,6 +60,7 @@ def modes():
     return found
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["twist", "rock along x", "bob", "rock along y"][: sample(2, 4)])
 def test_a_block_on_an_elastic_joint_oscillates_as_its_stiffness_over_the_face_says(name):
     """Trapezium rule: the period is longer by (omega h)^2 / 12, and no more."""
@@ -197,6 +198,7 @@ def test_the_area_of_a_joint_is_what_both_faces_have_in_common(seed):
     assert frame[own, 0] == pytest.approx(np.tile([0.0, 0.0, 1.0], (own.sum(), 1)))
 
 
+@pytest.mark.long
 def test_a_block_that_slides_over_an_edge_tips_when_its_centroid_has_passed_it():
     law = concio.JointLaw(0.0, normal_stiffness=1e6)
     model = replace(blocks(((-0.5, -0.3, 0.0), (0.5, 0.3, 0.3)), ((-0.5, -0.3, 0.3), (0.5, 0.3, 0.6))),

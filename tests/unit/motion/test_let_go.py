@@ -34,6 +34,7 @@ def undecided(model):
     return replace(found, solution=replace(found.solution, status=Status.UNDECIDED))
 
 
+@pytest.mark.long
 def test_a_block_below_its_limit_comes_to_rest_and_one_above_is_seen_to_fall():
     """Statics of a block: it turns over at a load of width over height, here 0.25 of its weight."""
     rests = concio.let_go(undecided(leaning(0.97)))
@@ -49,6 +50,7 @@ def test_a_block_below_its_limit_comes_to_rest_and_one_above_is_seen_to_fall():
     assert "does it come to rest?" in falls.verdict.question.asked
 
 
+@pytest.mark.long
 def test_what_is_decided_stays_decided():
     """The proof stays the answer, and what was seen is told beside it."""
     for share, status, outcome in ((0.9, Status.SOLVED, Outcome.HOLDS), (1.1, Status.NO_EQUILIBRIUM, Outcome.FAILS)):
@@ -73,6 +75,7 @@ def test_work_is_bounded_and_what_still_moves_is_told_to_move(monkeypatch):
     assert stopped.verdict.outcome is Outcome.UNDECIDED
 
 
+@pytest.mark.long
 def test_what_comes_to_rest_elsewhere_is_another_structure():
     """One of two blocks is described 0.1 m above the floor: it lands and stands there."""
     two = blocks(((0.0, 0.0, 0.0), (0.5, 0.5, 0.5)), ((2.0, 0.0, 0.1), (2.5, 0.5, 0.5)))

@@ -73,6 +73,7 @@ def test_blocks_on_one_floor_are_parts_of_their_own():
     assert len(set(report.part.tolist())) == 3
 
 
+@pytest.mark.long
 def test_shots_stay_on_the_grid_of_steps():
     """But for those right after an impact, kept placements are a step apart."""
     tilt = 0.5 * np.arctan(1 / 3)

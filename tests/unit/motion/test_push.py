@@ -304,6 +304,7 @@ def test_an_elastic_slab_that_leans_on_a_corner_stands_and_is_pushed_as_a_rigid_
     assert found.peak == pytest.approx(by_hand, rel=2e-2)
 
 
+@pytest.mark.long
 def test_a_push_that_another_structure_ends_does_so_on_its_own_curve():
     """A wide pillar on springs leads, a narrow one beside it gives way: displacements stay proportional to loads."""
     law = concio.JointLaw(0.8, normal_stiffness=2e4, tangential_stiffness=1e4)

@@ -156,6 +156,7 @@ def test_a_model_that_is_turned_about_the_vertical_is_pushed_the_same():
     assert other.centre[-1, 1] == pytest.approx(about @ found.centre[-1, 1], abs=1e-6)
 
 
+@pytest.mark.long
 def test_a_block_mirrored_is_the_mirrored_push():
     found, other = (concio.push(TALL, direction=(1, side * 0.4)) for side in (1, -1))
     assert other.multiplier == pytest.approx(found.multiplier, abs=1e-9)
@@ -228,6 +229,7 @@ def test_bad_arguments_in_space(options, words):
         concio.push(TALL, **options)
 
 
+@pytest.mark.long
 def test_a_push_in_space_from_the_command_line(tmp_path):
     file, out = tmp_path / "pillar.toml", tmp_path / "pushed"
     concio.save(TALL, file)

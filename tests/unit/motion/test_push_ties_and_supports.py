@@ -33,6 +33,7 @@ def on_a_floor_turned_by(angle, **kw):
     return pillar(supports=(concio.Support("turn", "floor", rotation=angle),), **kw)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("angle", np.deg2rad([8.0, -10.0, -5.0, 2.0][: sample(2, 4)]))
 def test_a_pillar_on_a_floor_that_has_turned_carries_what_hand_statics_says(angle):
     """tan(atan(b/h) + angle) to the right, tan(atan(b/h) - angle) to the left; as one drawn on a turned floor does."""
@@ -43,6 +44,7 @@ def test_a_pillar_on_a_floor_that_has_turned_carries_what_hand_statics_says(angl
         assert found.rotation[0] == pytest.approx([angle, angle], abs=1e-5)
 
 
+@pytest.mark.long
 def test_a_floor_turned_beyond_the_critical_angle_carries_nothing():
     with pytest.raises(concio.NoEquilibriumError, match=r"supports have moved by 0\.70"):
         concio.push(on_a_floor_turned_by(np.deg2rad(20.0)))

@@ -109,6 +109,7 @@ def test_a_rocking_block_moves_as_events_say(seed):
     assert 0.1 < check(seed) < 0.9
 
 
+@pytest.mark.long
 def test_the_peak_after_an_impact_does_not_depend_on_where_the_steps_fall():
     """After the impact within 0.1 %, whatever the step; felt where the steps find it, it was up to 1.5 % off."""
     half, high, ground, end, _ = drawn(16)

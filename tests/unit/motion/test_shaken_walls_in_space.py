@@ -28,6 +28,7 @@ def shaken(courses: int, along: int, duration: float) -> concio.DynamicsResult:
     return concio.dynamics(bricks(courses, along), GROUND, duration=duration, step=2e-3, stop_overturned=False)
 
 
+@pytest.mark.long
 def test_the_law_of_an_impact_stays_as_it_is_while_what_turns_in_a_step_is_worked_out_again(monkeypatch):
     # where taking the lent compliance back does not end, the forces it counts from may not move on with each round:
     # gyroscopic moments, worked out from velocities that changed by a hundredth each time, never settled

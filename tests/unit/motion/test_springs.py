@@ -37,6 +37,7 @@ def test_springs_store_the_work_that_deforms_them():
     assert springs.broken(np.array([True, False, False, True])).longest.tolist() == [0.0, 0.0, 0.0, 0.0]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("start", [(0.02, 0.0), (0.0, -0.01)][: sample(1, 2)])
 def test_damping_in_proportion_to_joints_against_the_exact_motion_of_a_block(start):
     """M q'' + b K q' + K q = 0 about the rest, K = C' k C of the joint in statics; normal and tangential springs."""

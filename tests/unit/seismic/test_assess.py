@@ -183,6 +183,7 @@ def test_named_blocks_move_while_the_others_stand() -> None:
     assert found.mechanisms[0].zeta <= found.mechanisms[-1].zeta
 
 
+@pytest.mark.long
 def test_a_joint_that_slides_is_checked_with_coulombs_flow() -> None:
     found = concio.assess(overturning(friction=0.05), site=site(), direction="left", levels=["SLV"])
     worst = found.worst

@@ -37,6 +37,7 @@ def worked_in_space() -> Assessment:
     return concio.assess(wall(), site=site(), direction="-x", control=("wall", (0.0, 1.0, 6.0)), curve="straight")
 
 
+@pytest.mark.long
 def test_worked_example_as_a_wall_in_space() -> None:
     """All numbers of the plane, with a curve followed in steps in place of a linkage."""
     found = worked_in_space()
@@ -91,6 +92,7 @@ def test_bad_input_in_space(more: dict[str, Any], said: str) -> None:
         concio.assess(wall(), site=site(), **more)
 
 
+@pytest.mark.long
 def test_ties_in_space_pull_and_break() -> None:
     tie = Tie("tie", "wall", (0.0, 1.0, 5.5), "", (5.0, 1.0, 5.5), stiffness=5000.0, yield_force=24.0,
               break_elongation=0.05)  # fmt: skip

@@ -114,6 +114,7 @@ def test_a_file_without_a_site_says_what_to_add(tmp_path: Path) -> None:
         read_asked(path)
 
 
+@pytest.mark.long
 def test_the_tie_force_that_is_needed_is_the_least_that_does() -> None:
     model = overturning(ties=(TIE,))
     arguments = {"site": site(), "direction": "left", "levels": ["SLD"]}

@@ -325,6 +325,7 @@ def test_zeta_beside_capacity_over_demand_has_its_sentence() -> None:
     assert any("is a ratio of accelerations" in line for line in found.verdict.limits)
 
 
+@pytest.mark.long
 def test_a_part_that_decides_above_the_bound_of_the_whole_has_a_bound_of_its_own() -> None:
     """What decides by zeta_E may begin to move later than the whole: the bound of the whole says nothing of it."""
     found = assessed(overturning(3, friction=0.08), levels=["SLV"])
@@ -384,6 +385,7 @@ levels = ["SLV"]
 """
 
 
+@pytest.mark.long
 def test_the_command_ends_with_the_exit_code_of_the_verdict(tmp_path: Path) -> None:
     for more, code, word in (("", 4, "incomplete"), ('elsewhere = ["height"]\n', 0, "verified")):
         path = tmp_path / f"{word}.toml"

@@ -34,6 +34,7 @@ def asked(model: Model, **more: object) -> tuple[LocalMechanism, Sensitivity | N
     return found.worst, found.sensitivity()
 
 
+@pytest.mark.long
 @settings(max_examples=sample(2, 10), deadline=None)
 @given(st.floats(0.05, 0.09), st.integers(2, 4), st.floats(15.0, 25.0))
 def test_a_wall_that_slides_on_its_foot(friction: float, n: int, weight: float) -> None:
@@ -78,6 +79,7 @@ def test_walls_whose_blocks_slide_and_turn(friction: float, length: float, load:
         assert row.rate == pytest.approx(slope, abs=1e-8 * max(abs(row.rate), here.multiplier / p.value)), p.name
 
 
+@pytest.mark.long
 def test_the_report_of_a_wall_that_slides_has_bars_and_a_sentence() -> None:
     found = concio.assess(overturning(3, friction=0.08), site=site(), direction="left", levels=["SLV"])
     told = found.sensitivity()

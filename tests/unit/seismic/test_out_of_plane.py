@@ -143,6 +143,7 @@ def test_a_wall_held_at_its_top_bends_between_foot_and_top() -> None:
     assert any("held in both senses at 4 m" in line for line in found.verdict.limits)
 
 
+@pytest.mark.long
 def test_the_section_gives_what_the_same_wall_gives_when_drawn_as_a_section() -> None:
     """The worked example of an overturning wall, drawn in elevation: the same alpha_0 and zeta_E."""
     plain = overturning(4)
@@ -157,6 +158,7 @@ def test_the_section_gives_what_the_same_wall_gives_when_drawn_as_a_section() ->
     assert strip.zeta == pytest.approx(wall.zeta, rel=1e-6)
 
 
+@pytest.mark.long
 def test_a_bearing_near_the_inner_face_tells_the_senses_apart() -> None:
     found = assessed(facade(0.5, window=False, roof=30.0), out_of_plane=OutOfPlane(bearing=0.1))
     own = {m.direction: m.multiplier for m in found.strips[0].mechanisms if ";" not in m.name}

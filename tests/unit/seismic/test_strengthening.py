@@ -113,6 +113,7 @@ def test_a_tie_by_either_name_is_the_same() -> None:
     assert one.reached == other.reached
 
 
+@pytest.mark.long
 def test_the_height_at_which_a_tie_needs_least_is_the_highest_of_a_pillar() -> None:
     """F z is what is missing: W (alpha h/2 - b/2) with alpha at the demand; a lower height after it needs more."""
     tie = Tie("rod", "c2", (0.0, 1.5), "", (-4.0, 1.5), stiffness=1e6, yield_force=1.0)

@@ -54,6 +54,7 @@ def test_a_tie_below_does_not_hold_what_overturns_above_it() -> None:
     assert found.force == min(found.by_height.values())
 
 
+@pytest.mark.long
 @settings(max_examples=sample(3, 30), deadline=None)
 @given(
     st.lists(st.tuples(st.floats(0.25, 0.8), st.floats(0.4, 1.5)), min_size=2, max_size=6),
@@ -106,6 +107,7 @@ def test_the_multiplier_that_is_asked_for() -> None:
     assert multiplier_needed(high, ["SLV"], strip, 1.35) > multiplier_needed(place, ["SLV"], strip, 1.35)
 
 
+@pytest.mark.long
 def test_the_report_of_a_facade_tells_the_forces(tmp_path: Path) -> None:
     spans = [(0.0, 2.0), (2.0, 4.0), (4.0, 6.0)]
     stones = tuple(

@@ -17,6 +17,7 @@ def rocked(monkeypatch, least):
     return concio.dynamics(model, {"x": pulse, "y": pulse}, duration=0.4, step=5e-3, stop_overturned=False)
 
 
+@pytest.mark.long
 def test_a_motion_is_the_same_with_the_pairs_that_stand_apart(monkeypatch):
     picked = []
     of = active_pairs.ActivePairs.of

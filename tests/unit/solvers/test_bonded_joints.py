@@ -107,6 +107,7 @@ def wall(law: JointLaw, rng: np.random.Generator) -> Model:
     return concio.extrude(plane, rng.uniform(0.1, 0.3))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(sample(1, 12)))
 def test_random_bonded_walls_are_the_limit_of_stiff_joints(seed: int) -> None:
     rng = np.random.default_rng(seed)

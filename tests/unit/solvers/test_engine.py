@@ -203,6 +203,7 @@ def test_of_several_answers_a_symmetric_panel_gets_the_symmetric_one(friction):
     assert abs(across.sum()) <= 1e-10 * np.abs(across).sum()
 
 
+@pytest.mark.long
 def test_the_way_from_a_neighbour_can_be_cancelled():
     seen = []
 

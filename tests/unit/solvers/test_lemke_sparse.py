@@ -61,6 +61,7 @@ def test_digits_survive_a_nearly_singular_matrix_on_the_way() -> None:
     np.testing.assert_allclose(factor.column(8), np.linalg.solve(dense, np.eye(n)[8]), rtol=0, atol=1e-11)
 
 
+@pytest.mark.long
 @settings(max_examples=25, deadline=None)
 @given(
     st.integers(0, 1000),

@@ -149,6 +149,7 @@ def test_least_friction_without_a_lower_proof_is_left_open(only_verdicts):
     assert not found.settled
 
 
+@pytest.mark.long
 def test_smallest_friction_of_a_thin_arch_is_bounded_by_proofs():
     """400 voussoirs, weight on the centre line, thickness next to the least: factor was nan with below = 1, "shown"."""
     a = semicircular_arch(400, 0.107428)

@@ -64,6 +64,7 @@ def test_updated_factor_is_the_factor_of_the_updated_matrix() -> None:
     np.testing.assert_allclose(blocks.solve(b), np.linalg.solve(dense(s, other, 1e-3), b), atol=1e-9)
 
 
+@pytest.mark.long
 @settings(max_examples=30, deadline=None)
 @given(st.integers(0, 10_000), st.sets(st.sampled_from(LAWS)))
 @example(995, {"tension"})  # where refinement on an updated factor stops short of the last digits

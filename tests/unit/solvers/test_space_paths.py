@@ -72,6 +72,7 @@ def test_a_path_in_space_in_words() -> None:
     assert path_facts(found, point)["point"]["at"] == list(point.at)
 
 
+@pytest.mark.long
 def test_settlement_of_an_extruded_arch() -> None:
     moving = concio.Support("spread", "right abutment", displacement=(0.01, -0.004))
     model = replace(ARCH, supports=(moving,))

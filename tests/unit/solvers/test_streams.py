@@ -56,11 +56,13 @@ def test_nothing_is_written_into_files_that_got_the_number_of_a_closed_stream(tm
     assert (tmp_path / "r" / "summary.json").read_text().startswith("{")
 
 
+@pytest.mark.long
 def test_a_reader_that_has_gone_is_no_error(tmp_path: Path) -> None:
     found = shell(tmp_path, "CONCIO schema | head -1")
     assert (found.returncode, found.stdout, found.stderr) == (0, "{\n", "")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("title", ["\U0001f9f1 wall", "\u77f3\u9020"][: sample(1, 2)])
 def test_letters_that_the_font_lacks_are_told_once(title: str, tmp_path: Path) -> None:
     path = tmp_path / "m.toml"

@@ -426,6 +426,7 @@ def test_samples_of_openturns_go_both_ways() -> None:
     assert sample_of_openturns(VARIABLES, turned).numbers.tolist() == made.numbers.tolist()
 
 
+@pytest.mark.long
 def test_stop_at_an_interval_is_the_same_for_every_executor(tmp_path: Path) -> None:
     stop = concio.Stop("multiplier", width=0.2, below=0.4)
     serial = concio.study(formula, VARIABLES, "multiplier", "monte-carlo", size=400, stop=stop)

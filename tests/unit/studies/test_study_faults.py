@@ -60,6 +60,7 @@ def test_rows_are_the_same_whatever_the_executor_and_a_run_that_raises_is_one(ex
     assert np.isnan(found.values("multiplier")).tolist() == bad.tolist()
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("executor", EXECUTORS[:2])
 def test_a_run_that_never_ends_is_a_row(executor: str) -> None:
     found = study(hanging, executor, time_limit=0.3)
@@ -83,6 +84,7 @@ def test_a_run_that_takes_its_worker_with_it_is_a_row() -> None:
     assert [row.verdict for row in few.rows] == ["done", "worker_lost", "done", "done"]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("executor", ["processes", pytest.param("dask", marks=pytest.mark.long)])
 def test_a_lost_worker_loses_no_row(executor: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("CONCIO_TEST_MARKS", str(tmp_path))
@@ -112,6 +114,7 @@ concio.study(slow, VARIABLES, "multiplier", "monte-carlo", size=60, directory={d
 """
 
 
+@pytest.mark.long
 def test_a_killed_study_goes_on_and_repeats_nothing(tmp_path: Path) -> None:
     from study_functions import slow
 
@@ -172,6 +175,7 @@ except concio.ConcioError as error:
 """
 
 
+@pytest.mark.long
 def test_a_full_disk_keeps_the_rows_there_are(tmp_path: Path) -> None:
     directory = tmp_path / "study"
     directory.mkdir()

@@ -59,6 +59,7 @@ def test_the_index_is_that_of_a_pillar_that_tips(required: float, weight: float)
     assert found.verdict.outcome.name == "HOLDS"
 
 
+@pytest.mark.long
 def test_a_file_asks_for_it_and_report_console_and_numbers_have_it(tmp_path: Path) -> None:
     path = tmp_path / "pillar.toml"
     path.write_text(STUDY, encoding="utf-8")

@@ -48,6 +48,7 @@ def pillar(direction: tuple[float, float], at: float = 1.6, friction: float = 0.
     )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", ["rigid", "elastic"])
 def test_what_falls_out_of_a_slot_is_not_carried_though_its_bound_is_locked(kind: str) -> None:
     """`run` proves that it collapses; "friction and geometry carry any multiple", checked, exit 0, was the answer."""

@@ -174,6 +174,7 @@ def test_forces_far_above_the_loads_ask_for_attention():
     assert quiet.attention == ()
 
 
+@pytest.mark.long
 def test_a_dome_that_can_follow_its_springers_is_not_said_to_be_forced_together(monkeypatch):
     """The added compliance stays, for the ways its joints slip depend on it; their forces do not grow as it falls."""
     dome = concio.dome(span=4, ring=0.4, courses=4, blocks=8, oculus=0.8, block="rigid", friction=0.7, spread=1e-3)
@@ -187,6 +188,7 @@ def test_a_dome_that_can_follow_its_springers_is_not_said_to_be_forced_together(
     assert stiffer.solution.normal_force.max() == pytest.approx(result.solution.normal_force.max(), rel=1e-3)
 
 
+@pytest.mark.long
 def test_a_bound_without_a_path_beside_a_structure_that_falls():
     """Three stones between two walls, nothing beneath: they fall, forces in balance exist, and `limit` ends with 0."""
     top, cut, left, foot = (1.3, 0.8), (0.975, 0.625), (0.0, 0.1), (1.05, 0.0)

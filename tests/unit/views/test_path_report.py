@@ -33,6 +33,7 @@ def column(kind: str) -> str:
     )
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", ["rigid", pytest.param("elastic", marks=pytest.mark.long)])
 def test_a_path_that_ends_in_collapse_says_so_everywhere(tmp_path: Path, kind: str) -> None:
     file, out = tmp_path / "column.toml", tmp_path / "out"

@@ -256,6 +256,7 @@ def browse(page: Path, profile: Path, size: str = "1200,900") -> str:
     return done.stdout
 
 
+@pytest.mark.long
 @pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed")
 @pytest.mark.parametrize("size", ["1200,900", "500,900"])
 def test_report_works_in_a_browser(arched: Result, tmp_path: Path, size: str) -> None:

@@ -97,6 +97,7 @@ def test_nothing_that_a_user_holds_prints_its_arrays(held: dict[str, object]) ->
     assert not numbers
 
 
+@pytest.mark.long
 def test_the_texts_say_what_matters(held: dict[str, object]) -> None:
     for name, words in {
         "model": ("Model: column", "3 bodies (3 elastic), 1 fixed; ", "E = 20 GPa", "friction 0.9", "load group live"),

@@ -191,6 +191,7 @@ def test_the_report_of_a_mechanism_in_space_is_one_offline_file() -> None:
     assert page.count("<figure") == 5
 
 
+@pytest.mark.long
 def test_loads_are_drawn_where_and_as_they_act() -> None:
     face = ((0, 0, 0), (3, 0, 0), (3, 0, 0.5), (0, 0, 0.5))
     loads = (

@@ -135,6 +135,7 @@ def test_what_is_too_large_is_refused_before_it_is_read(client: Client) -> None:
     assert client.call("state")["document"]["name"] == "pillar.toml"
 
 
+@pytest.mark.long
 def test_many_requests_and_connections_leave_it_answering(client: Client) -> None:
     begun = threading.active_count()
     idle = [socket.create_connection(("127.0.0.1", client.server.server_port), timeout=LATE) for _ in range(200)]
@@ -402,6 +403,7 @@ def test_a_window_that_is_closed_answers_nobody_any_more(file: Path) -> None:
     assert kept.sock.recv(1) == b"", "the connection is over"
 
 
+@pytest.mark.long
 def test_a_request_that_is_being_answered_ends_with_its_window(file: Path) -> None:
     with window(file.parent, file) as client:
         client.until("picture")
