@@ -15,7 +15,7 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spl
 
 from concio.analysis.inner_forces import inner_forces
-from concio.analysis.lent_compliance import lent_assembly
+from concio.analysis.lent_compliance import lend
 from concio.errors import InputError
 from concio.problem.contact_problem import ContactProblem
 from concio.solvers.methods import find
@@ -32,6 +32,8 @@ SOLVED = 1e-9
 """Largest relative error of the linear equations of a derivative."""
 SOFT, ROUNDS = 1e-8, 20
 """Compliance added to closed joints of the scaled equations, which corrections remove, and these at most."""
+ROUNDING = 1e-12
+"""Change of r, beside forces or displacements, that is rounding."""
 HUGE, OPEN = 1e12, 1e-6
 """Motions this large say that a structure moves; forces of this share in a null vector are not determined."""
 
@@ -154,6 +156,15 @@ class LinearisedState:
         along = np.where(self.sticks[:, None], slip, self.t_t + radius[:, None] * turned)
         return np.concatenate([balance, normal, along.ravel()])
 
+    def is_rounding(self, change: Array) -> bool:
+        """Return whether a change of r is no more than rounding of forces, and of motions, leaves."""
+        closed = self.closed & ~self.crushed
+        motions = np.concatenate([np.zeros(self.problem.unknowns, bool), closed,
+                                  np.repeat(self.sticks, self.problem.dim - 1)])  # fmt: skip
+        inner = float(np.abs(self.problem.K @ self.u).max(initial=0.0)) + self.force
+        return bool(np.abs(change[motions]).max(initial=0.0) <= ROUNDING * self.far
+                    and np.abs(change[~motions]).max(initial=0.0) <= ROUNDING * inner)  # fmt: skip
+
     def rates(self, slope: Array) -> Rates:
         """Return dz/dp for dr/dp.
 
@@ -205,7 +216,7 @@ def yielding_problem(result: Result) -> tuple[ContactProblem, Solution]:
     """
     if not result.lent_compliance or result.assembly.lent_compliance:
         return result.assembly.problem(result.factors), result.solution
-    problem = lent_assembly(result.model).problem(result.factors)
+    problem = lend(result.assembly).problem(result.factors)
     solution = find("auto")(problem)
     if not solution.solved:
         msg = "the state with a compliance added to hard joints was not found again"

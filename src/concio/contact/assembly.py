@@ -326,7 +326,10 @@ def assemble_beside(known: Assembly, model: Model) -> Assembly:
     old = known.model
     if model.bodies is not old.bodies or _found_by(model) != _found_by(old) or model.periods is not None:
         return assemble(model)
-    return _arrays(model, Reference.described(model, detection=known.detection))
+    disc = known.disc.of_same_meshes(model)
+    if disc is None:
+        return _arrays(model, Reference.described(model, detection=known.detection))
+    return _arrays(model, Reference(model, known.detection, disc))
 
 
 def _found_by(model: Model) -> tuple[object, ...]:

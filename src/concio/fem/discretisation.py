@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -17,6 +17,7 @@ from concio.fem.solid import SolidShape
 from concio.fem.solid_shape import solid_shape
 from concio.kinematics.rigid import motions, rigid_operator
 from concio.model.limits import LARGEST_REFINEMENT, LARGEST_UNKNOWNS
+from concio.model.materials import Elastic, Rigid
 from concio.model.model import Body, Model
 from concio.model.polyhedron import Polyhedron
 from concio.representation import short_repr
@@ -57,6 +58,14 @@ class Discretisation:
     origins: Array
     centroids: Array
     reach: Array
+
+    def of_same_meshes(self, model: Model) -> Discretisation | None:
+        """Return that of a model with the same bodies and loads or laws of its own; None where meshes are others."""
+        old, elastic = self.model, {b.material for b in model.bodies if b.kind == "elastic"}
+        keys = ("mesh_size", "refinement", "element", "plane")
+        same = model.bodies is old.bodies and all(getattr(model, key) == getattr(old, key) for key in keys)
+        stiff = all(_deforms_as(model.materials[name], old.materials.get(name)) for name in elastic)
+        return replace(self, model=model) if same and stiff else None
 
     @property
     def unknowns(self) -> int:
@@ -126,6 +135,11 @@ class Discretisation:
                 raise InputError(msg, where=f"block '{name}'", hint="give a point inside it or on its outline")
         dofs = self.offsets[b] + (d * nodes[:, None] + np.arange(d)).ravel()
         return dofs, np.kron(weights, np.eye(d))
+
+
+def _deforms_as(new: Elastic | Rigid, old: Elastic | Rigid | None) -> bool:
+    """Return whether two materials have the same stiffness."""
+    return isinstance(new, Elastic) and isinstance(old, Elastic) and (new.E, new.nu) == (old.E, old.nu)
 
 
 def interpolated(nodes: Array, cells: Array, point: Array) -> tuple[Array, Array]:

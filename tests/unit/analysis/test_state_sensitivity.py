@@ -10,8 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import concio
-from concio.analysis.linearised_state import Rates
+from concio.analysis.linearised_state import LinearisedState, Rates
 from concio.analysis.parameters import Parameter, parameters_of, stiffnesses_of
+from concio.analysis.state_sensitivity import _row
+from concio.contact.assembly import assemble_beside
 from concio.errors import InputError
 from samples import sample
 
@@ -132,3 +134,31 @@ def test_a_stiffer_pillar_is_shorter_and_a_state_that_is_none_has_no_derivatives
     falls = concio.solve(replace(pillar, loads=(*pillar.loads, concio.Load("weight", (2.0, 0.0)))), on_failure="return")
     with pytest.raises(InputError, match="no certified state"):
         concio.state_sensitivity(falls)
+
+
+def test_what_the_equations_are_linear_in_takes_two_models(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Friction and weights; four where they are not, and the derivatives are those of differences all the same."""
+    made: list[concio.Model] = []
+
+    def counted(known, model):
+        made.append(model)
+        return assemble_beside(known, model)
+
+    monkeypatch.setattr("concio.analysis.state_sensitivity.assemble_beside", counted)
+    model = concio.column(width=0.5, height=2.0, blocks=3, block="rigid", horizontal=0.1)
+    laws = {k: replace(v, normal_stiffness=1e6, tangential_stiffness=4e5) for k, v in model.laws.items()}
+    model = replace(model, laws=laws)
+    taken: dict[str, int] = {}
+    result = concio.solve(model)
+    here = LinearisedState.of(result)
+    assert not here.about.any()
+    for p in numbers_of(model):
+        made.clear()
+        row = _row(p, result, here)
+        taken[p.kind] = len(made)
+        h = STEP * p.value
+        beside = {k: concio.solve(p.change(p.value + k * h)).solution.displacement for k in CENTRAL}
+        wanted = sum(c * beside[k] for k, c in CENTRAL.items()) / h
+        assert row.above is not None
+        assert np.abs(row.above.displacement - wanted).max() <= 1e-8 * np.abs(beside[1]).max() / p.value, p.name
+    assert [taken[k] for k in ("friction", "unit weight", "normal stiffness", "length")] == [2, 2, 4, 4]
