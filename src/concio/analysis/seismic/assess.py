@@ -184,6 +184,7 @@ def assess(
         raise NoEquilibriumError(error.what, where=error.where, hint=hint) from None
     strips = strips_assessed(drawn, terms, progress)
     beside, rest = of_strips(strips)
+    late = (at for s in strips if not s.like for at in s.late)
     ranked = tuple(sorted([*found.shown, *beside], key=lambda m: (m.zeta, m.least, m.multiplier)))
     arguments = {
         "levels": levels, "mechanisms": mechanisms, "direction": direction, "live": live, "knowledge": knowledge,
@@ -193,7 +194,7 @@ def assess(
     }  # fmt: skip
     return Assessment(
         model, site, wanted, ranked, found.locked, knowledge, factor, reason, curve,
-        arguments, others=(*found.others, *rest), sought=found.sought,
+        arguments, others=(*found.others, *rest), late=(*found.late, *late), sought=found.sought,
         parts=found.parts, places=found.places, bounds=found.bounds, acting=acting,
         covered=(*found.covered, *covered_by(strips)), assembly=searches[0].assembly, strips=strips,
     )  # fmt: skip

@@ -56,6 +56,8 @@ class Assessment(Shown):
         Of the call, for assessing a changed model again.
     others : tuple of LocalMechanism
         Mechanisms of parts of the structure that were followed and decide nothing.
+    late : tuple of (str, float)
+        Parts that begin to move too late to decide and were not followed, and the height at which they start [m].
     sought : int
         Searches made, over all pushes.
     parts : tuple of str
@@ -87,6 +89,7 @@ class Assessment(Shown):
     curve: str
     arguments: Mapping[str, Any]
     others: tuple[LocalMechanism, ...]
+    late: tuple[tuple[str, float], ...]
     sought: int
     parts: tuple[str, ...]
     places: Mapping[str, tuple[int, int]]

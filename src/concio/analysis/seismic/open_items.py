@@ -57,9 +57,10 @@ def open_items(found: Assessment) -> tuple[OpenItem, ...]:
         if site.invented(level)
     ]
     if not site.building and "height" not in excused:
-        high = [m for m in (*found.mechanisms, *found.others) if m.level > ABOVE]
-        names = tuple(dict.fromkeys((m.name, m.level) for m in high))
-        items += [OpenItem("height", {"names": names})] if high else []
+        followed = [(m.name, m.level) for m in (*found.mechanisms, *found.others)]
+        # what begins to move too late on the ground may be first with the amplification
+        high = tuple(dict.fromkeys(at for at in (*followed, *found.late) if at[1] > ABOVE))
+        items += [OpenItem("height", {"names": high})] if high else []
     if "out of plane" not in excused and not found.strips and facades_of(found.assembly):
         items.append(OpenItem("out of plane"))
     for m in found.mechanisms:

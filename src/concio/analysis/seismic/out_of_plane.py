@@ -48,6 +48,8 @@ class StripFound:
         That were met.
     multiplier : float
         The least that was met; ``inf`` where nothing can move.
+    late : tuple of (str, float)
+        What does not stand among ``mechanisms``, since it decides nothing, and the height at which it starts [m].
     like : str
         Name of an earlier strip with the same numbers, from which these are taken; empty for none.
     """
@@ -59,6 +61,7 @@ class StripFound:
     sought: int
     motions: tuple[str, ...]
     multiplier: float
+    late: tuple[tuple[str, float], ...]
     like: str = ""
 
     @property
@@ -141,9 +144,10 @@ def _assessed(strip: Strip, terms: Terms, progress: ProgressCallback | None) -> 
     mechanisms = tuple(replace(m, name=_name(m.name, strip), direction=sense[m.direction], section=strip.section)
                        for m in found.shown)  # fmt: skip
     none = tuple(replace(n, name=_name(n.name, strip), direction=sense[n.direction]) for n in found.locked)
+    late = tuple((_name(n, strip), z) for n, z in (*((m.name, m.level) for m in found.others), *found.late))
     least = min((c.multiplier for c in found.covered), default=np.inf)
     motions = tuple(dict.fromkeys(m for c in found.covered for m in c.motions))
-    return StripFound(strip, mechanisms, _followed(found), none, found.sought, motions, least)
+    return StripFound(strip, mechanisms, _followed(found), none, found.sought, motions, least, late)
 
 
 def _followed(found: Searched) -> int:

@@ -59,6 +59,8 @@ class Searched:
         The weakest of each push, the named ones, and those of parts that decide something; by zeta_E.
     others : tuple of LocalMechanism
         Mechanisms of parts that were followed and decide nothing.
+    late : tuple of (str, float)
+        Parts whose mechanism begins to move too late to be followed, and the height at which it starts [m].
     locked : tuple of NoMechanism
     sought : int
         Searches made.
@@ -75,6 +77,7 @@ class Searched:
 
     shown: tuple[LocalMechanism, ...]
     others: tuple[LocalMechanism, ...]
+    late: tuple[tuple[str, float], ...]
     locked: tuple[NoMechanism, ...]
     sought: int
     parts: tuple[str, ...]
@@ -144,7 +147,7 @@ def search_all(
         for one in ready:
             teller.tell(f"{one.name}, push {search.push.way}: followed")
             shown.append(examined(one, terms, elements.get(one.name)))
-    followed = _followed(waiting, shown, terms, teller)
+    followed, late = _followed(waiting, shown, terms, teller)
     deciding = [m for m in followed if _decides(m, shown)]
     others = tuple(m for m in followed if m not in deciding)
     ranked = sorted([*shown, *deciding], key=lambda m: (m.zeta, m.least, m.multiplier))
@@ -154,7 +157,7 @@ def search_all(
     places = {kind: (sum(c.sought.get(kind, 0) for c in cuts), sum(c.there.get(kind, 0) for c in cuts))
               for kind in kinds}  # fmt: skip
     what = covered(records, places)
-    return Searched(tuple(ranked), others, tuple(locked), sought, names, places, bounds, what)
+    return Searched(tuple(ranked), others, late, tuple(locked), sought, names, places, bounds, what)
 
 
 def _of_push(
@@ -212,21 +215,22 @@ def _alike(a: Found, b: Found) -> bool:
 
 def _followed(
     waiting: list[Prepared], shown: list[LocalMechanism], terms: Terms, teller: _Teller
-) -> list[LocalMechanism]:
-    """Follow mechanisms of parts, the lowest onset first, but those that begin to move too late to decide."""
+) -> tuple[list[LocalMechanism], tuple[tuple[str, float], ...]]:
+    """Follow mechanisms of parts, the lowest onset first; return them, and what begins to move too late to decide."""
     best = {level: min((m.zeta_at(level) for m in shown), default=np.inf) for level in terms.levels}
-    found = []
+    found, late = [], dict[tuple[str, float], None]()
     onsets = [one.least(terms) for one in waiting]
     for k in sorted(range(len(waiting)), key=lambda k: min(onsets[k].values())):
         one, onset = waiting[k], onsets[k]
         if all(onset[level] >= best[level] for level in terms.levels):
+            late[one.name, one.level(terms.site)] = None
             continue
         teller.tell(f"{one.name}, push {one.push.way}: followed")
         made = examined(one, terms)
         found.append(made)
         for level in terms.levels:
             best[level] = min(best[level], made.zeta_at(level))
-    return found
+    return found, tuple(late)
 
 
 def _decides(m: LocalMechanism, shown: list[LocalMechanism]) -> bool:
