@@ -5,6 +5,8 @@ PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check
+# Where the surroundings forbid it, every process of the tests would compile the package, and every run the tests.
+export PYTHONDONTWRITEBYTECODE :=
 
 .PHONY: demo test lint docs clean
 .DELETE_ON_ERROR:

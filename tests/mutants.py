@@ -237,7 +237,8 @@ def killed_by(mutant: Mutant, package: Path, traces: Traces | None = None) -> st
 
 def first_failure(tests: Sequence[str], package: Path, seconds: int = SECONDS, select: str = "not long") -> str:
     """Return the first test that fails with a copy of the package, how else they ended, or nothing."""
-    env = {**os.environ, "PYTHONPATH": str(package.parent), "OMP_NUM_THREADS": "1"}
+    # no bytecode: that of a mutant of the same second and size would pass for that of the next
+    env = {**os.environ, "PYTHONPATH": str(package.parent), "OMP_NUM_THREADS": "1", "PYTHONDONTWRITEBYTECODE": "1"}
     options = ["-x", "-q", "--no-header", "-p", "no:cacheprovider", "-m", select, "--tb=no"]
     done = subprocess.run(
         [sys.executable, "-c", LIMITED, str(seconds), *options, *tests],

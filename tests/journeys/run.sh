@@ -19,4 +19,4 @@ if ! found; then
         "Install chromium, or name it: CHROMIUM=/path/to/chromium make journeys"
     [ "${JOURNEYS:-}" != required ]; exit
 fi
-PYTHONPATH=src:tests OMP_NUM_THREADS=1 "$python" -m pytest -q -p no:cacheprovider tests/journeys/journeys.py
+PYTHONPATH=src:tests OMP_NUM_THREADS=1 "$python" -m pytest -q -p no:cacheprovider -n 2 --dist worksteal tests/journeys/journeys.py
