@@ -57,7 +57,8 @@ class SpreadSteps:
     pairs : int
         Contact pairs in all.
     error : float
-        Largest share by which the points of a joint that twists resist torsion better than an even pressure.
+        Largest share by which the points of a joint that twists resist torsion better than an even pressure; negative
+        where all resist it less, as points in odd number along the sides do: nothing is taken off then.
     """
 
     steps: LoadSteps
@@ -68,12 +69,12 @@ class SpreadSteps:
     @property
     def carried(self) -> float:
         """What the steps carry, less what the points resist torsion too well; ``nan`` where they carry nothing."""
-        return self.steps.carried / (1.0 + self.error)
+        return self.steps.carried / (1.0 + max(self.error, 0.0))
 
     @property
     def not_reached(self) -> float:
         """The least load that the steps did not reach, likewise; ``nan`` where they reached all."""
-        return self.steps.failed / (1.0 + self.error)
+        return self.steps.failed / (1.0 + max(self.error, 0.0))
 
 
 def twisting(assembly: Assembly, motion: Array, rule: int = CORNERS) -> Array:
@@ -117,7 +118,7 @@ def twisted_joints(assembly: Assembly, motions: Sequence[Array], rule: int = COR
 
 
 def torsion_error(assembly: Assembly, joints: Sequence[int]) -> float:
-    """Return the largest share by which points resist the torsion of some joints better than an even pressure.
+    """Return the largest share by which points resist the torsion of some joints better than an even pressure, signed.
 
     Parameters
     ----------
@@ -126,14 +127,14 @@ def torsion_error(assembly: Assembly, joints: Sequence[int]) -> float:
     joints : sequence of int
         Numbers of the interfaces.
     """
-    worst, pairs = 0.0, assembly.pairs
+    found, pairs = [], assembly.pairs
     for joint in joints:
         patch = assembly.detection.interfaces[joint]
         assert isinstance(patch, Patch)
         own = pairs.interface == joint
         even = _mean_distance(*spread_points(patch, FINE))
-        worst = max(worst, _mean_distance(pairs.point[own], pairs.area[own]) / even - 1.0)
-    return worst
+        found.append(_mean_distance(pairs.point[own], pairs.area[own]) / even - 1.0)
+    return max(found, default=0.0)
 
 
 def _mean_distance(points: Array, area: Array) -> float:

@@ -177,7 +177,13 @@ def _why(found: LimitResult) -> str:
     spread = found.spread is not None and found.spread.steps.multipliers and found.spread.carried <= low
     if spread and not (math.isfinite(carried) and low * (1 - SAME) <= carried <= low * (1 + SAME)):
         assert found.spread is not None
-        n, too = found.spread.points, f"{100 * found.spread.error:.2g} %"
+        n, too = found.spread.points, f"{100 * abs(found.spread.error):.2g} %"
+        if not n and found.spread.error < 0:
+            return (
+                f"certified load steps carry it with contact points that resist torsion {too} less than a uniform "
+                "pressure does in joints that twist; an even number of them along each side resists it about as much"
+                f"{_spread_next(found)}"
+            )
         if not n:
             return (
                 f"certified load steps carry {found.spread.steps.carried:.6g}, less {too} by which the contact points "
