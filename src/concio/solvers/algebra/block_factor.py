@@ -191,11 +191,12 @@ class BlockFactor:
 
 
 def _together(d: int, bodies: Array) -> int:
-    """Return how many consecutive unknowns belong to one node, or to one body where all are rigid ones in space.
+    """Return how many consecutive unknowns belong to one node, or body where all that move are rigid ones in space.
 
     Without pairs, which say what the dimension is (d = 0), none do.
     """
-    return SMALL_BODY if d == 3 and bool((np.diff(bodies) == SMALL_BODY).all()) else max(d, 1)
+    sizes = np.diff(bodies)
+    return SMALL_BODY if d == 3 and bool((sizes[sizes > 0] == SMALL_BODY).all()) else max(d, 1)
 
 
 def _groups(C: sp.csr_array, pairs: int, bodies: Array) -> list[tuple[Array, Array, Array]]:

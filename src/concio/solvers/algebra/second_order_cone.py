@@ -16,6 +16,8 @@ import numpy as np
 
 from concio.problem.contact_problem import Array
 
+SINGULAR = "a matrix is singular"
+
 
 def times(A: Array, x: Array) -> Array:
     """Return the products of matrices (m, d, d) and vectors (m, d)."""
@@ -58,14 +60,34 @@ def clipped(a: Array, least: float, most: float) -> Array:
 
 
 def inverses(H: Array) -> Array:
-    """Return the inverses of matrices (m, d, d); raises LinAlgError where there is none."""
-    if H.shape[1] != 2:
+    """Return the inverses of matrices (m, d, d) with a regular tangential block; LinAlgError where there is none.
+
+    In space the tangential block is inverted first: without dilatancy what it leaves of the normal entry is that entry.
+    """
+    if H.shape[1] == 2:
+        return _of_two(H)
+    if H.shape[1] != 3:
         return np.asarray(np.linalg.inv(H))
+    T = _of_two(H[:, 1:, 1:])
+    below = -(T[:, :, 0] * H[:, 1, 0, None] + T[:, :, 1] * H[:, 2, 0, None])
+    beside = -(H[:, 0, 1, None] * T[:, 0, :] + H[:, 0, 2, None] * T[:, 1, :])
+    left = H[:, 0, 0] + H[:, 0, 1] * below[:, 0] + H[:, 0, 2] * below[:, 1]
+    if not left.all():
+        raise np.linalg.LinAlgError(SINGULAR)
+    D = np.empty(H.shape)
+    D[:, 0, 0] = 1.0 / left
+    D[:, 0, 1:] = beside * D[:, 0, :1]
+    D[:, 1:, 0] = below * D[:, 0, :1]
+    D[:, 1:, 1:] = T + below[:, :, None] * D[:, 0, None, 1:]
+    return D
+
+
+def _of_two(H: Array) -> Array:
+    """Return the inverses of matrices (m, 2, 2)."""
     determinants = H[:, 0, 0] * H[:, 1, 1] - H[:, 0, 1] * H[:, 1, 0]
     if not determinants.all():
-        msg = "a matrix is singular"
-        raise np.linalg.LinAlgError(msg)
-    D = np.empty_like(H)
+        raise np.linalg.LinAlgError(SINGULAR)
+    D = np.empty(H.shape)
     D[:, 0, 0], D[:, 1, 1] = H[:, 1, 1] / determinants, H[:, 0, 0] / determinants
     D[:, 0, 1], D[:, 1, 0] = -H[:, 0, 1] / determinants, -H[:, 1, 0] / determinants
     return D

@@ -5,6 +5,8 @@ ordering is computed once, on the graph of the nodes, and every later matrix is 
 on running-bond walls (``benchmarks/orderings.py``), nested dissection costs a quarter of the minimum-degree ordering.
 Where the structure is small or slender its matrix is a narrow band, which LAPACK factorises in a seventh to three
 quarters of the time: panels of some thirty elastic or four hundred rigid blocks, columns and arches of any length.
+Large structures of rigid blocks in space are factorised as dense fronts by LAPACK, in half the time of SuperLU
+(:mod:`concio.solvers.algebra.front_factor`).
 
 Engines, chosen by name and never by what happens to be installed: ``superlu`` (what comes with SciPy: SuperLU, and
 LAPACK for narrow bands) and ``pardiso`` (extra ``fast``). A contact problem says which (``ContactProblem.engine``).
@@ -24,6 +26,7 @@ from scipy.sparse import csgraph
 
 from concio.errors import ConcioError, InputError
 from concio.problem.contact_problem import Array, Engine
+from concio.solvers.algebra.front_factor import FrontFactor, FrontPlan
 
 PIVOT = 0.01
 """Share of the largest entry of its column down to which a diagonal entry is the pivot, unless stated otherwise."""
@@ -33,6 +36,10 @@ PANEL = 8
 
 NARROW = 1.1e7
 """Unknowns times the square of half the band up to which LAPACK factorises the band."""
+
+
+BODY, FRONTS = 6, 3000
+"""Least unknowns of a node and of a matrix that LAPACK factorises as dense fronts: rigid blocks in space."""
 
 
 class SingularMatrixError(ConcioError):
@@ -104,6 +111,8 @@ class Pattern:
         Place among the values of each entry the pattern was made of.
     width : int or None
         Farthest entry from the diagonal where LAPACK is to factorise the band; else None.
+    fronts : FrontPlan or None
+        Dense fronts where LAPACK is to factorise these; else None.
     """
 
     engine: Engine
@@ -113,6 +122,7 @@ class Pattern:
     indptr: Array
     slot: Array
     width: int | None = None
+    fronts: FrontPlan | None = None
 
     @classmethod
     def of(cls, row: Array, column: Array, size: int, engine: Engine = "superlu", group: int = 2) -> Pattern:
@@ -137,7 +147,10 @@ class Pattern:
         major, minor = (place[column], place[row]) if engine == "superlu" else (place[row], place[column])
         keys, slot = np.unique(major * size + minor, return_inverse=True)
         indptr = np.searchsorted(keys, np.arange(size + 1, dtype=np.int64) * size).astype(np.int32)
-        return cls(engine, order, ordering, (keys % size).astype(np.int32), indptr, slot, width)
+        minor = (keys % size).astype(np.int32)
+        dense = ordering == "nested dissection" and engine == "superlu" and group >= BODY and size >= FRONTS
+        fronts = FrontPlan(indptr, minor, group) if dense and not size % group else None
+        return cls(engine, order, ordering, minor, indptr, slot, width, fronts)
 
     @property
     def size(self) -> int:
@@ -165,6 +178,9 @@ class OrderedFactor:
         self.count = 0
         self._lu: Any = None
         self._pardiso: Any = None
+        self._fronts = None if pattern.fronts is None else FrontFactor(pattern.fronts)
+        if self._fronts is not None:
+            return
         if pattern.width is not None:
             column = np.repeat(np.arange(pattern.size), np.diff(pattern.indptr))
             self._in_band = column * (3 * pattern.width + 1) + 2 * pattern.width + pattern.minor - column
@@ -186,6 +202,9 @@ class OrderedFactor:
             raise SingularMatrixError(msg)
         self.count += 1
         p = self.pattern
+        if self._fronts is not None:
+            self._factorise_fronts(self._fronts, data)
+            return
         if p.width is not None:
             self._factorise_band(data, p.width)
             return
@@ -208,6 +227,16 @@ class OrderedFactor:
             raise SingularMatrixError(str(error)) from None
         except MemoryError:
             msg = f"not enough memory to factorise {p.size:,} unknowns"
+            raise ConcioError(msg, hint="use larger elements or rigid blocks") from None
+
+    def _factorise_fronts(self, fronts: FrontFactor, data: Array) -> None:
+        try:
+            fronts.factorise(data)
+        except ZeroDivisionError:
+            msg = "the matrix is singular"
+            raise SingularMatrixError(msg) from None
+        except MemoryError:
+            msg = f"not enough memory to factorise {self.pattern.size:,} unknowns"
             raise ConcioError(msg, hint="use larger elements or rigid blocks") from None
 
     def _factorise_band(self, data: Array, width: int) -> None:
@@ -242,6 +271,8 @@ class OrderedFactor:
         """Return floating-point operations of a pair of triangular solves over those of a factorisation."""
         if self.pattern.engine == "pardiso":
             return float(2e-6 * self._pardiso.get_iparm(18) / max(self._pardiso.get_iparm(19), 1))  # fill, Mflop
+        if self.pattern.fronts is not None:
+            return self.pattern.fronts.solve_operations / self.pattern.fronts.operations
         if self.pattern.width is not None:
             return 3.0 / (2.0 * max(self.pattern.width, 2))  # 6 n w over 4 n w^2, the rows exchanged among them
         columns = np.diff(self._lu.L.indptr).astype(float)
@@ -258,6 +289,8 @@ class OrderedFactor:
         elif self.pattern.width is not None:
             lu, pivots = self._lu
             x, _ = sl.lapack.dgbtrs(lu, self.pattern.width, self.pattern.width, permuted, pivots)
+        elif self._fronts is not None:
+            x = self._fronts.solve(permuted)
         else:
             x = self._lu.solve(permuted)
         result = np.empty_like(b)
