@@ -13,23 +13,26 @@ Unknowns are ordered node by node, ``(u_x, u_y)`` or ``(u_x, u_y, u_z)``; strain
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy.sparse as sp
-import skfem
 
 from concio.arguments import closest
 from concio.errors import GeometryError, InputError
 from concio.representation import short_repr
+
+if TYPE_CHECKING:
+    import skfem
 
 Array = np.ndarray
 
 
 @dataclass(frozen=True)
 class Family:
-    """An element family: scikit-fem element, corners, quadrature order, order of its edges, dimension."""
+    """An element family: name in scikit-fem, corners, quadrature order, order of its edges, dimension."""
 
-    element: type
+    element: str
     cells: int
     quadrature: int
     edge_order: int
@@ -38,22 +41,22 @@ class Family:
 
 
 FAMILIES: dict[str, Family] = {
-    "Q4": Family(skfem.ElementQuad1, 4, 3, 1),
-    "Q4I": Family(skfem.ElementQuad1, 4, 3, 1, incompatible=True),
-    "Q8": Family(skfem.ElementQuadS2, 4, 5, 2),
-    "Q9": Family(skfem.ElementQuad2, 4, 5, 2),
-    "T3": Family(skfem.ElementTriP1, 3, 1, 1),
-    "T6": Family(skfem.ElementTriP2, 3, 4, 2),
+    "Q4": Family("ElementQuad1", 4, 3, 1),
+    "Q4I": Family("ElementQuad1", 4, 3, 1, incompatible=True),
+    "Q8": Family("ElementQuadS2", 4, 5, 2),
+    "Q9": Family("ElementQuad2", 4, 5, 2),
+    "T3": Family("ElementTriP1", 3, 1, 1),
+    "T6": Family("ElementTriP2", 3, 4, 2),
 }
 """Element families by name. Quadrature integrates the stiffness of parallelograms and triangles exactly, with at least
 as many points as an element has nodes, so that stresses can be fitted at the nodes of any mesh."""
 
 SOLID_FAMILIES: dict[str, Family] = {
-    "H8": Family(skfem.ElementHex1, 8, 3, 1, dim=3),
-    "H8I": Family(skfem.ElementHex1, 8, 3, 1, incompatible=True, dim=3),
-    "H27": Family(skfem.ElementHex2, 8, 5, 2, dim=3),
-    "T4": Family(skfem.ElementTetP1, 4, 2, 1, dim=3),
-    "T10": Family(skfem.ElementTetP2, 4, 4, 2, dim=3),
+    "H8": Family("ElementHex1", 8, 3, 1, dim=3),
+    "H8I": Family("ElementHex1", 8, 3, 1, incompatible=True, dim=3),
+    "H27": Family("ElementHex2", 8, 5, 2, dim=3),
+    "T4": Family("ElementTetP1", 4, 2, 1, dim=3),
+    "T10": Family("ElementTetP2", 4, 4, 2, dim=3),
 }
 """Element families of models in space."""
 
@@ -133,12 +136,15 @@ def build(points: Array, cells: Array, name: str, D: Array) -> Elements:
     GeometryError
         An element is turned inside out.
     """
+    import skfem  # takes as long to load as a small model of rigid blocks to solve
+
     chosen, cells = _fitting(family(name), cells)
     order = VERTICES.get(chosen.cells if chosen.dim == 3 else 0)
     own = cells if order is None else cells[:, order]
+    element: Any = getattr(skfem, chosen.element)
     mesh_type = {(2, 4): skfem.MeshQuad, (2, 3): skfem.MeshTri, (3, 8): skfem.MeshHex, (3, 4): skfem.MeshTet}
     mesh = mesh_type[chosen.dim, chosen.cells](np.ascontiguousarray(points.T), np.ascontiguousarray(own.T))
-    basis = skfem.Basis(mesh, chosen.element(), intorder=chosen.quadrature)
+    basis = skfem.Basis(mesh, element(), intorder=chosen.quadrature)
     nodes = np.ascontiguousarray(basis.doflocs.T)
     dofs = basis.element_dofs
     area = basis.dx

@@ -153,6 +153,18 @@ def test_solving_loads_neither_figures_nor_the_command_line() -> None:
     assert not loaded & {"scipy.optimize", "scipy.spatial"}, "they take as long to load as a small model to solve"
 
 
+def test_rigid_blocks_are_solved_without_finite_elements(tmp_path: Path) -> None:
+    """Nor does the command line look for plugins of pydantic in the metadata of every installed package."""
+    file = tmp_path / "column.toml"
+    file.write_text('[column]\nwidth = 1.0\nheight = 2.0\nblocks = 2\nblock = "rigid"\n', encoding="utf-8")
+    code = "import sys\nfrom concio.cli.main import main\nfrom contextlib import suppress\n"
+    code += f"sys.argv = ['concio', 'run', '--quiet', {str(file)!r}]\nwith suppress(SystemExit):\n    main()\n"
+    code += "import os\nassert os.environ['PYDANTIC_DISABLE_PLUGINS']"
+    loaded = loaded_after(code)
+    assert "concio.analysis.result" in loaded, "it was solved"
+    assert "skfem" not in loaded
+
+
 def test_every_public_name_has_a_home() -> None:
     for name in concio.__all__:
         assert getattr(concio, name) is not None
