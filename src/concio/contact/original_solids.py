@@ -55,10 +55,14 @@ class _Named:
     lone : int
         How many are corners on faces or edges; those behind are points of joints.
     body : (m, 2) integer array
-    rings : (faces, s, 2) integer array
-        Vertices at both ends of the sides of each face; a side that begins where it ends fills up.
-    level : (faces, 3) array
-        First tangent of each face as described.
+    rings : (g, s, 2) integer array
+        Vertices at both ends of the sides of faces on which corners stand; a side that begins where it ends fills up.
+    level : (g, 3) array
+        First tangent of each of them as described.
+    of_face : (g,) integer array
+        Body of each of them.
+    face : (faces,) integer array
+        Which of them a pair stands on.
     corner : (faces,) integer array
     edges : (m - faces, 2, 2) integer array
         Vertices at both ends of the edges of either body.
@@ -77,6 +81,8 @@ class _Named:
     body: Array
     rings: Array
     level: Array
+    of_face: Array
+    face: Array
     corner: Array
     edges: Array
     columns: Array
@@ -136,6 +142,7 @@ class OriginalSolids:
         in_joint = solids.face_body[np.column_stack([first, second])[lone:]]
         body = np.concatenate([np.column_stack([of_face, self.owner[corner]]), solids.edge_body[edges], in_joint])
         law, opening = self.rules.find(body.min(axis=1), body.max(axis=1))
+        own, at = np.unique(face, return_inverse=True)
         joints, joint = None, np.full(lone, -1)
         share, bonded = np.ones(len(key)), np.zeros(len(key), dtype=bool)
         if layout.toucher.joints is not None:
@@ -153,7 +160,8 @@ class OriginalSolids:
         )
         columns = np.concatenate([columns.reshape(len(body), 12), *node_columns(self.reference, slots)], axis=1)
         return _Named(
-            slots, faces, lone, body, self.rings[face], self.level[face], corner, solids.edge[edges],
+            slots, faces, lone, body, self.rings[own], self.level[own], solids.face_body[own], at, corner,
+            solids.edge[edges],
             columns, joints, joint, joints is None or joints.sound,
         )  # fmt: skip
 
@@ -223,11 +231,13 @@ class OriginalSolids:
         from_first = sides - sides[:, :1, :1]
         area = np.cross(from_first[:, :, 0], from_first[:, :, 1]).sum(axis=1)
         normal = area / np.linalg.norm(area, axis=1)[:, None]
-        along = np.matmul(rotation[n.body[: n.faces, 0]], n.level[:, :, None])[:, :, 0]
+        along = np.matmul(rotation[n.of_face], n.level[:, :, None])[:, :, 0]
         frame = np.stack([normal, along, np.cross(normal, along)], axis=1)
-        gap = ((at - sides[:, 0, 0]) * normal).sum(axis=1)
-        flat = np.einsum("fsec,fdc->fsed", sides - at[:, None, None], frame[:, 1:])
-        return at, frame, gap, _beyond(flat) - self.reference.solids.beside[n.corner]
+        flat = np.matmul(from_first, frame[:, None, 1:].transpose(0, 1, 3, 2))
+        frame = frame[n.face]
+        off = np.matmul(frame, (at - sides[n.face, 0, 0])[:, :, None])[:, :, 0]
+        seen = flat[n.face] - off[:, None, None, 1:]
+        return at, frame, off[:, 0], _beyond(seen) - self.reference.solids.beside[n.corner]
 
     def _standing(
         self, layout: SolidLayout, n: _Named, point: Array, normal: Array, beyond: Array, stands: Array

@@ -38,7 +38,7 @@ from concio.problem.contact_problem import Engine
 from concio.problem.tolerances import CERTIFIED
 from concio.solvers.stepping.matrix import StepMatrix
 from concio.solvers.stepping.problem import StepSolution
-from concio.solvers.stepping.solver import StepSolver
+from concio.solvers.stepping.solver import LARGE, StepSolver
 
 Array = np.ndarray
 
@@ -106,7 +106,7 @@ class Stepper:
         self.frames = Frames(reference, scheme)
         self.maker = PairMaker(reference, scheme)
         self.certificate = Certificate(reference, scheme, self.maker)
-        self.solver = StepSolver(engine or reference.model.engine)
+        self.solver = StepSolver(engine or reference.model.engine, large=LARGE)
         self.fixed = np.flatnonzero(disc.shape_of == -2)
         self.turns = disc.dim == 3
         self.parts = Parts(disc.shape_of == -2)

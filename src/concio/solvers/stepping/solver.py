@@ -14,6 +14,7 @@ from concio.solvers.algebra.sparse_factor import SingularMatrixError
 from concio.solvers.interior import engine as interior
 from concio.solvers.pivoting import sparse_lemke
 from concio.solvers.stepping.active_pairs import ActivePairs
+from concio.solvers.stepping.one_factor import OneFactor
 from concio.solvers.stepping.problem import StepProblem, StepSolution
 from concio.solvers.stepping.settle_step import LinearStep, settle
 from concio.solvers.stepping.softer_joints import by_softer_joints
@@ -22,6 +23,9 @@ from concio.solvers.stepping.step_factor import StepFactor
 
 FEW = 25
 """Changed pairs up to which one small problem is cheaper than another factorisation."""
+
+LARGE = 500
+"""Unknowns from which on a factorisation costs more than the iterations that take its place."""
 
 FLIPS = 6
 """Times all pairs that violate their law change state together before a small problem settles them."""
@@ -33,18 +37,21 @@ class StepSolver:
     Parameters
     ----------
     engine : {"superlu", "pardiso"}, optional
+    large : float
+        Unknowns from which on, in space, one factorisation does for a step where it can.
     """
 
-    def __init__(self, engine: Engine = "superlu") -> None:
-        self.engine = engine
+    def __init__(self, engine: Engine = "superlu", *, large: float = np.inf) -> None:
+        self.engine, self.large = engine, large
         self.factor: StepFactor | None = None
         self._linear: LinearStep | None = None
         self._pairs: ActivePairs | None = None
+        self._one: OneFactor | None = None
         self.counts: dict[str, int] = {}
 
     def new_layout(self) -> None:
         """Forget the pattern: the rows meet other unknowns from now on."""
-        self.factor = self._linear = self._pairs = None
+        self.factor = self._linear = self._pairs = self._one = None
 
     def step_again(self, p: StepProblem, found: StepSolution) -> StepSolution:
         """Solve a step of which only the forces have changed a little since :meth:`step`, with the factors of then.
@@ -53,6 +60,11 @@ class StepSolver:
         """
         before = self._pairs
         pairs = self._pairs = ActivePairs.of(p, before)
+        if self._one is not None and before is not None and before.part.values is pairs.part.values:
+            now = pairs.solution(found)
+            x, t, residual = self._one.again(pairs.part, now.x, now.t)
+            if residual < STEP_GOOD:
+                return pairs.of_all(replace(now, x=x, t=t, residual=residual))
         if self._linear is not None and before is not None and before.pick is pairs.pick:
             now = pairs.solution(found)
             x, t, errors = self._linear.refined(pairs.part, now.x, now.t)
@@ -84,6 +96,14 @@ class StepSolver:
 
     def _step(self, p: StepProblem, states: PairStates, x: Array, t: Array) -> StepSolution:
         """Solve a step of active pairs, by each means in its turn."""
+        self._one = self._linear = None
+        if p.dim == 3 and len(p.b) >= self.large:
+            assert self.factor is not None
+            self._one = OneFactor(self.factor)
+            found = self._one.step(p, states, x, t)
+            if found is not None and found.residual < STEP_SETTLED:
+                return found
+            self._one = None
         found = self._rounds(p, states, x, t)
         if found is not None and found.residual < STEP_SETTLED:
             return found

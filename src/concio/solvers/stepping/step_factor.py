@@ -78,6 +78,9 @@ class StepFactor:
         self.D: Array | None = None
         self.diagonal: Springs | None = None
 
+    _rows: tuple[Array, Array, Array] | None = None
+    """Places of entries of the pattern by rows, their columns, and where rows begin."""
+
     _assembled: tuple[Array, Array] | None = None
     """Blocks D of the last matrix of these rows, and its entries."""
 
@@ -104,9 +107,9 @@ class StepFactor:
         """
         before = self._assembled
         change = D if before is None else D - before[0]
-        some = _filled(change)  # open pairs have none; from round to round few pairs change
+        some = filled(change)  # open pairs have none; from round to round few pairs change
         if before is not None and 2 * len(some) > len(D):
-            before, change, some = None, D, _filled(D)
+            before, change, some = None, D, filled(D)
         data = self._products(change, some)
         data += self._of_matrix() if before is None else before[1]
         self._assembled = D.copy(), data
@@ -129,11 +132,27 @@ class StepFactor:
         """Return the entries of A."""
         return np.bincount(self._matrix_slot, weights=self._matrix.data, minlength=self.pattern.nnz)
 
+    def without(self, some: Array) -> sp.csr_array:
+        """Return the last matrix factorised, without what pairs ``some`` (k,) have in it."""
+        assert self._assembled is not None
+        if self._rows is None:
+            p = self.pattern
+            major = p.order[np.repeat(np.arange(p.size), np.diff(p.indptr))]
+            minor = p.order[p.minor]
+            row, column = (minor, major) if p.engine == "superlu" else (major, minor)
+            place = np.lexsort((column, row))
+            ends = np.concatenate([[0], np.cumsum(np.bincount(row, minlength=p.size))]).astype(np.int32)
+            self._rows = place, column[place].astype(np.int32), ends
+        D, data = self._assembled
+        place, column, ends = self._rows
+        n = self.pattern.size
+        return sp.csr_array(((data - self._products(D, some))[place], column, ends), shape=(n, n))
+
     def solve(self, b: Array) -> Array:
         """Return the solution for the last matrix factorised; ``b`` is (N,) or (N, k)."""
         return self.numeric.solve(b)
 
 
-def _filled(D: Array) -> Array:
+def filled(D: Array) -> Array:
     """Return the numbers of blocks (m, d, d) with an entry that is not zero."""
     return np.unique(np.flatnonzero(D.ravel()) // (D.shape[1] * D.shape[2]))
