@@ -11,6 +11,7 @@ import typer
 from concio.cli.options import Factors, File, Json, Quiet, factors_of, loaded
 from concio.cli.outcome import guarded, print_json, say
 from concio.cli.output import check_file, replaced_file
+from concio.cli.progress import on_the_way
 
 if TYPE_CHECKING:
     from concio.contact.assembly import Assembly
@@ -76,7 +77,10 @@ def prove(
             ways = {"collapse": collapse_proof, "balance": balance_proof, "equilibrium": _equilibrium, None: _outcome}
             live, made = [], ways[claim](assembly, factors, numbers=numbers)
         else:
-            made = limit(assembly, live=live, path=False, steps=False, search=False).proof(numbers)
+            found = limit(assembly, live=live, path=False, steps=False, search=False)
+            sizes = f"{len(assembly.model.free_bodies):,} blocks, {len(assembly.pairs):,} contact pairs"
+            on_the_way([f"  associated bound  {found.associated.multiplier:.6g}; its fractions are sought: {sizes}"])
+            made = found.proof(numbers)
     made = with_attention(made, assembly)
     sentence = recompute(made)
     verdict = proof_verdict(made, sentence, assembly, factors, live)

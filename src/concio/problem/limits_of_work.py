@@ -78,7 +78,7 @@ FRICTION_PROGRAMMES = 200
 COLLAPSE_WORK = 100_000
 """No further start of the search for collapse states is made once linear programmes times pairs have come to this."""
 
-MOST_BITS = 400_000
+MOST_BITS = 100_000
 """Bits of a solution in fractions beyond which it is given up."""
 
 # -- load paths -------------------------------------------------------------------------------------------------------

@@ -25,7 +25,7 @@ from concio.problem.pair_state import Normal, PairStates
 from concio.proof import verify_equilibrium as checker
 from concio.proof.deformable import deformable_statement
 from concio.proof.exact_certificate import FORMAT, factors_of, sealed
-from concio.proof.exact_solve import Row, scaled, solve_exactly
+from concio.proof.exact_solve import LongFractionsError, Row, scaled, solve_exactly
 from concio.proof.statement import Numbers, fraction_text, statement, text_of
 
 BITS = (384, 768, 1536, 3072)
@@ -205,7 +205,10 @@ def _exact(
 
 def _in_fractions(made: dict[str, Any], rows: Sequence[Row], right: Sequence[Fraction]) -> dict[str, Any] | None:
     """Return the certificate with the solution in fractions; None where it is not accepted."""
-    x = solve_exactly(rows, right)
+    try:
+        x = solve_exactly(rows, right)
+    except LongFractionsError:
+        x = None
     if x is None:
         return None
     whole = {k: v for k, v in made.items() if k not in ("left_out", "pivots")}

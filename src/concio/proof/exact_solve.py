@@ -20,14 +20,27 @@ import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as sla
 
+from concio.errors import SolverError
 from concio.problem.limits_of_work import MOST_BITS
 
 Row = dict[int, Fraction]
+
+
+class LongFractionsError(SolverError):
+    """A solution has fractions with too many digits."""
+
+    def __init__(self) -> None:
+        digits = round(MOST_BITS / 2 * math.log10(2), -3)
+        msg = f"the exact solution has fractions of more than {digits:,.0f} digits: they are not sought"
+        super().__init__(msg, hint="'concio limit' and 'concio run' certify the result in floating point; coordinates "
+                         "with few digits make fractions shorter, as --numbers decimal does")  # fmt: skip
 
 BITS = 24
 """Bits of a correction that are taken at a time."""
 ROOM = 3
 """Bits by which each correction is smaller than the one before, at least."""
+AGREES = 32
+"""Last bits of what is known of a solution that a fraction may miss."""
 FIRST_BITS = 256
 SINGULAR = 1e200
 """Correction, rows and columns scaled, from which a matrix counts as singular."""
@@ -35,6 +48,11 @@ SINGULAR = 1e200
 
 def solve_exactly(rows: Sequence[Row], right: Sequence[Fraction]) -> list[Fraction] | None:
     """Return the solution of a square system of fractions; None where its matrix is singular or nearly so.
+
+    Raises
+    ------
+    LongFractionsError
+        The fractions have more digits than are sought.
 
     Parameters
     ----------
@@ -56,7 +74,7 @@ def solve_exactly(rows: Sequence[Row], right: Sequence[Fraction]) -> list[Fracti
     residual, taken, wanted, last = b, 0, FIRST_BITS, math.inf
     while taken < MOST_BITS:
         if not any(residual):
-            return _checked(rows, right, [Fraction(p, 1 << taken) for p in parts])
+            return _checked(whole, b, [Fraction(p, 1 << taken) for p in parts])
         step = factor.solve(np.array([r / s for r, s in zip(residual, largest, strict=True)])) / columns
         if not np.isfinite(step).all():
             return None
@@ -72,10 +90,10 @@ def solve_exactly(rows: Sequence[Row], right: Sequence[Fraction]) -> list[Fracti
         taken += BITS
         if taken >= wanted:
             found = _reconstructed(parts, taken)
-            if found is not None and _checked(rows, right, found) is not None:
+            if found is not None and _checked(whole, b, found) is not None:
                 return found
             wanted *= 2
-    return None
+    raise LongFractionsError
 
 
 def scaled(rows: Sequence[Row], right: Sequence[Fraction]) -> sp.csc_array:
@@ -120,18 +138,24 @@ def _floats(whole: Sequence[dict[int, int]], n: int) -> tuple[sp.csc_array, np.n
 
 
 def _reconstructed(parts: Sequence[int], bits: int) -> list[Fraction] | None:
-    """Return fractions of small denominators that agree with parts / 2**bits; None where a denominator is not small."""
-    found, common, most = [], 1, 1 << (bits // 2 - 8)
+    """Return fractions of small denominators that agree with parts / 2**bits; None where an unknown has none."""
+    found, common, most, unit = [], 1, 1 << (bits // 2 - 8), 1 << bits
     for part in parts:
-        value = Fraction(part * common, 1 << bits).limit_denominator(most // common or 1)
-        found.append(value / common)
+        value = part * common  # of unit: a fraction whose denominator is small once those before have been found
+        near = Fraction(value, unit).limit_denominator(most // common or 1)
+        apart = abs(near.numerator * unit - value * near.denominator)
+        if apart > near.denominator * common << AGREES:
+            return None  # too few bits are known
+        found.append(near / common)
         common = lcm(common, found[-1].denominator)
         if common > most:
             return None
     return found
 
 
-def _checked(rows: Sequence[Row], right: Sequence[Fraction], x: list[Fraction]) -> list[Fraction] | None:
-    """Return the solution if it satisfies every equation exactly."""
-    holds = all(sum((v * x[j] for j, v in row.items()), Fraction(0)) == b for row, b in zip(rows, right, strict=True))
+def _checked(whole: Sequence[dict[int, int]], b: Sequence[int], x: list[Fraction]) -> list[Fraction] | None:
+    """Return the solution if it satisfies every equation, of whole numbers, exactly."""
+    common = lcm(*(v.denominator for v in x))
+    top = [v.numerator * (common // v.denominator) for v in x]
+    holds = all(sum(v * top[j] for j, v in row.items()) == r * common for row, r in zip(whole, b, strict=True))
     return x if holds else None

@@ -20,7 +20,7 @@ from concio import Body, JointLaw, JointRule, Load, Model, Polyhedron, Rigid, Su
 from concio.errors import InputError, SolverError
 from concio.proof import verify, verify_equilibrium
 from concio.proof.exact_certificate import prove_balance, prove_collapse, prove_limit, sealed
-from concio.proof.exact_solve import solve_exactly
+from concio.proof.exact_solve import LongFractionsError, solve_exactly
 from concio.proof.statement import fraction_text
 from pillars import ARCH, THIN, pillar, sideways, slot
 from samples import sample
@@ -47,6 +47,27 @@ def test_systems_of_fractions_are_solved_exactly(n: int) -> None:
     rows = [{j: s * int(v) for j, v in enumerate(row) if v} for row, s in zip(whole, scale, strict=True)]
     right = [Fraction(float(v)) for v in rng.normal(size=n)]
     assert solve_exactly(rows, right) == eliminated(rows, right)
+
+
+def test_fractions_with_more_digits_than_are_sought_are_told(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """And of a command by its size first; a step whose signs intervals decide needs none."""
+    rng = np.random.default_rng(7)
+    rows = [{j: Fraction(float(v)) for j, v in enumerate(row)} for row in rng.normal(size=(9, 9)) + 4 * np.eye(9)]
+    right = [Fraction(float(v)) for v in rng.normal(size=9)]
+    found = solve_exactly(rows, right)
+    assert found == eliminated(rows, right)
+    longest = max(v.denominator.bit_length() for v in found)
+    assert longest > 400
+    monkeypatch.setattr("concio.proof.exact_solve.MOST_BITS", longest)  # twice as many are needed to know it
+    with pytest.raises(LongFractionsError, match=r"fractions of more than .* digits"):
+        solve_exactly(rows, right)
+    file = tmp_path / "arch.toml"
+    file.write_text(ARCH)
+    monkeypatch.setattr("concio.proof.exact_solve.MOST_BITS", 64)
+    code, _, err = run("prove", file, "--claim", "limit")
+    assert code == 4
+    assert "contact pairs\nError: the exact solution has fractions of more than" in err
+    assert not file.with_suffix(".proof.json").exists()
 
 
 def eliminated(rows: list[dict[int, Fraction]], right: list[Fraction]) -> list[Fraction]:
