@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import concio
+from concio.analysis import sensitivity as module
 from concio.analysis.parameters import Parameter, parameters_of
 from concio.analysis.seismic.assessment_asked import Head
 from concio.analysis.sensitivity import _Optimum
@@ -148,3 +150,20 @@ def test_forces_and_motions_beside_the_optimum_are_optima_too() -> None:
         assert np.abs(off).max() < 1e-7 * weight
         slides = best.slip > 1e-3 * best.slip.max()
         assert np.abs(one.t_t[slides, 0]) == pytest.approx(0.4 * np.abs(one.t_n[slides]), abs=1e-7 * weight)
+
+
+@pytest.mark.parametrize("same", [True, False])
+@pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
+def test_optima_that_disagree_on_a_slope_give_one_to_each_side(
+    same: bool, size: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """All optima of one slope: it is the derivative. Else the multiplier is computed beside, on each side."""
+    slopes = {"here": 2.0, "other": 2.0 if same else 2.0 + 1e-3}
+    monkeypatch.setattr(module, "_slope", lambda optimum, at, value, step, sign: slopes[optimum.name] / size)
+    monkeypatch.setattr(module, "_beside", lambda p, at, step: (7.0 if step > 0 else -7.0) / size)
+    p = SimpleNamespace(name="n", kind="k", of="", unit="", value=size, change=lambda value: value)
+    here, other = (SimpleNamespace(name=n, multiplier=1.0) for n in ("here", "other"))
+    row = module._row(p, lambda model: model, here, [other])
+    assert row is not None
+    wanted = (2.0, 2.0) if same else (-7.0, 7.0)
+    assert (row.below * size, row.above * size) == pytest.approx(wanted)

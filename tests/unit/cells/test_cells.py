@@ -12,6 +12,7 @@ import concio
 from concio.contact.detection import detect
 from concio.contact.macroscopic_strain import STRAINS
 from concio.errors import GeometryError, InputError
+from concio.model.generate.periodic_rubble import _contracted
 from concio.model.interfaces.detect import detect_interfaces
 from concio.model.model import Body, Model
 
@@ -165,3 +166,17 @@ def test_a_cell_is_held_by_its_neighbours_alone() -> None:
     small = replace(model, periods=((0.2, 0.0), (0.0, 0.25)))
     with pytest.raises(GeometryError, match=r"cell at \(\+1, \+0\).* overlap"):
         concio.assemble(small)
+
+
+@pytest.mark.parametrize("numbers", [(3, 1, 0, 2), (3, 0, 1, 2)])
+@pytest.mark.parametrize("shift", [(0, 0), (1, 0), (0, 1), (-2, 3)])
+def test_short_edges_are_contracted_alike_wherever_a_stone_is_told(
+    shift: tuple[int, int], numbers: tuple[int, ...]
+) -> None:
+    """Stones of a periodic rubble may be told some periods away: each edge has one length, and the cell one picture."""
+    period = np.array([3.0, 2.0])
+    xy = np.zeros((4, 2))
+    xy[list(numbers)] = [[0.0, 0.0], [1.5, 0.0], [1.5, 0.07], [0.0, 1.0]]
+    ring = [(v, *shift) for v in numbers]
+    (found,) = _contracted(xy, [ring], 0.2, period)
+    np.testing.assert_allclose(found - np.array(shift) * period, [[0.0, 0.0], [1.5, 0.035], [0.0, 1.0]], atol=1e-12)

@@ -173,3 +173,19 @@ def test_a_step_factor_adds_pairs_and_springs_where_they_belong(n: int) -> None:
     factor.factorise(D, springs)
     b = rng.normal(size=n)
     assert factor.solve(b) == pytest.approx(np.linalg.solve(dense, b), rel=1e-8)
+
+
+@pytest.mark.parametrize("by", FACTORS)
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+def test_one_entry_that_is_not_finite_is_enough_to_refuse_a_matrix(
+    by: str, value: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rng = np.random.default_rng(7)
+    K, C, ranges = blocks(rng, [6, 12, 6, 3, 9], 20, 2)
+    factor = BlockFactor(K, C, 20, ranges, asked(by, monkeypatch))
+    D = rng.standard_normal((20, 2, 2)) * 0.3 + 2 * np.eye(2)
+    added = np.ones(K.shape[0])
+    factor.factorise(D, added)
+    added[5] = value
+    with pytest.raises(SingularMatrixError, match="not finite"):
+        factor.factorise(D, added)
