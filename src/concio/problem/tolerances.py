@@ -116,6 +116,10 @@ PROGRAMME_ROUNDING = 1e-14
 CONE_TARGET = 1e-11
 """Residuals and relative gap at which a cone programme ends."""
 
+FROZEN_TARGET = 1e-10
+"""The same where strengths are frozen: forces make the next strengths, motions are known to a share of ``MOVES``, and
+the state that goes with one is proved by itself."""
+
 PROGRAMME_TARGET = 1e-12
 """Residuals and relative gap at which the interior point of a linear programme ends."""
 

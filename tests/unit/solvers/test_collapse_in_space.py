@@ -10,8 +10,11 @@ import pytest
 import concio
 from concio import JointLaw, Load, Model, Polyhedron, Rigid
 from concio.contact.assembly import assemble
+from concio.problem.tolerances import CONE_TARGET
+from concio.solvers.statics import collapse_search, cone_statics
 from concio.solvers.statics.collapse_search import CollapseSearch, find_collapse_state
 from concio.solvers.statics.collapse_state import certify_collapse
+from concio.solvers.statics.cone_interior import ConeAnswer
 from concio.solvers.statics.cone_statics import ConeStatics
 
 
@@ -120,3 +123,25 @@ def test_a_mechanism_of_a_programme_has_the_largest_entry_one(push: tuple[float,
     dead = assembly.problem({"live": 0.0})
     found = ConeStatics(dead).largest(assembly.problem({"live": 1.0}).f - dead.f)
     assert np.abs(found.velocity).max() == pytest.approx(1.0, abs=1e-15)
+
+
+def test_programmes_with_frozen_strength_end_where_their_digits_are_enough(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The same state of a dry corner as from programmes solved to their last digits, with fewer steps of them."""
+    model = concio.walls(
+        lines=[((0, 0), (0, 1.5)), ((0, 0), (1.5, 0))], height=1.5, block_size=(0.75, 0.25, 0.5), block="rigid",
+        friction=0.5, horizontal=1.0, towards=(-1, 0),
+    )  # fmt: skip
+    steps, found = list[int](), list[CollapseSearch]()
+    whole = cone_statics.maximise
+    for target in (collapse_search.FROZEN_TARGET, CONE_TARGET):
+        answers = list[ConeAnswer]()
+        monkeypatch.setattr(collapse_search, "FROZEN_TARGET", target)
+        monkeypatch.setattr(cone_statics, "maximise", lambda *a, **k: answers.append(whole(*a, **k)) or answers[-1])  # noqa: B023
+        found.append(search(model, starts=1))
+        steps.append(sum(one.iterations for one in answers))
+    early, late = (one.state for one in found)
+    assert early is not None
+    assert late is not None
+    assert early.certified
+    assert early.multiplier == pytest.approx(late.multiplier, rel=1e-8)
+    assert steps[0] < steps[1]

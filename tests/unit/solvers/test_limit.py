@@ -229,12 +229,12 @@ def test_a_programme_that_stops_ends_one_start_of_the_search_and_not_the_analysi
     """Strengths that grow with the load led to programmes of 1e16 times the load, and an error for an answer."""
     made = []
 
-    def stops(problem, live):
+    def stops(problem, live, **options):
         made.append(1)
         if len(made) > 2:
             msg = "the linear programme stopped"
             raise SolverError(msg)
-        return associated_limit(problem, live)
+        return associated_limit(problem, live, **options)
 
     monkeypatch.setattr(collapse_search, "associated_limit", stops)
     a = wall(FERRIS_TIN_LOI["wall 1"])

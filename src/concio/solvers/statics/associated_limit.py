@@ -25,7 +25,7 @@ from concio.errors import SolverError
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.parts import Part, parts_of
 from concio.problem.solution import Mechanism
-from concio.problem.tolerances import CHECKED
+from concio.problem.tolerances import CHECKED, CONE_TARGET
 from concio.representation import short_repr
 from concio.solvers.statics.cone_statics import ConeStatics
 from concio.solvers.statics.existence import statically_admissible
@@ -103,7 +103,7 @@ class LimitLoad:
         return max(self.residual, violation) <= CHECKED
 
 
-def associated_limit(problem: ContactProblem, live: Array) -> LimitLoad:
+def associated_limit(problem: ContactProblem, live: Array, *, target: float = CONE_TARGET) -> LimitLoad:
     """Return the largest multiplier of the live load for associated friction.
 
     It is the least of the connected parts', each found by itself and in its own units.
@@ -114,6 +114,8 @@ def associated_limit(problem: ContactProblem, live: Array) -> LimitLoad:
         Its load is the dead load.
     live : (N,) array
         Load that is multiplied [kN].
+    target : float
+        Residuals and relative gap at which a cone programme ends (in space).
 
     Raises
     ------
@@ -123,8 +125,8 @@ def associated_limit(problem: ContactProblem, live: Array) -> LimitLoad:
     live = np.asarray(live, dtype=float)
     parts = [part for part in parts_of(problem) if part.unknowns.size]
     if len(parts) <= 1:
-        return _of_one(problem, live)
-    found = [_of_one(part.problem, live[part.unknowns]) for part in parts]
+        return _of_one(problem, live, target)
+    found = [_of_one(part.problem, live[part.unknowns], target) for part in parts]
     least = int(np.argmin([-np.inf if np.isnan(one.multiplier) else one.multiplier for one in found]))
     return _of_all(problem, live, parts, found, least)
 
@@ -160,7 +162,7 @@ def _of_all(
     return LimitLoad(multiplier, found[least].upper, t_n, t_t, residual, mechanism)
 
 
-def _of_one(problem: ContactProblem, live: Array) -> LimitLoad:
+def _of_one(problem: ContactProblem, live: Array, target: float) -> LimitLoad:
     """Return the limit load of a connected part."""
     m, s = problem.pairs, problem.dim - 1
     nothing = (np.zeros(m), np.zeros((m, s)))
@@ -170,7 +172,7 @@ def _of_one(problem: ContactProblem, live: Array) -> LimitLoad:
         state = statically_admissible(problem)
         return LimitLoad(np.inf if state.exists else np.nan, np.inf, *nothing, state.residual, None)
     if problem.dim == 3:
-        return cone_limit(problem, live)
+        return cone_limit(problem, live, target)
     found = programmed_limit(problem, live, None)
     if np.isfinite(found.multiplier) and not found.checked:
         other = programmed_limit(problem, live, "highs")
@@ -212,9 +214,9 @@ def programmed_limit(problem: ContactProblem, live: Array, method: Method | None
     return LimitLoad(multiplier, upper, t_n, t_t, residual, mechanism)
 
 
-def cone_limit(problem: ContactProblem, live: Array) -> LimitLoad:
+def cone_limit(problem: ContactProblem, live: Array, target: float = CONE_TARGET) -> LimitLoad:
     """Return what the cone programme of space says, rechecked."""
-    found = ConeStatics(problem, problem.f if problem.f.any() else live).largest(live)
+    found = ConeStatics(problem, problem.f if problem.f.any() else live).largest(live, target=target)
     if np.isfinite(found.multiplier):
         upper, mechanism = kinematic_bound(problem, live, found.multiplier, found.velocity)
         return LimitLoad(found.multiplier, upper, found.t[:, 0], found.t[:, 1:], found.residual, mechanism)

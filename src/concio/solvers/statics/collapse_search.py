@@ -25,7 +25,7 @@ from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.limits_of_work import COLLAPSE_WORK
 from concio.problem.parts import Part, parts_of
 from concio.problem.solution import Progress, ProgressCallback
-from concio.problem.tolerances import CHECKED
+from concio.problem.tolerances import CHECKED, FROZEN_TARGET
 from concio.representation import short_repr
 from concio.solvers.statics.associated_limit import LimitLoad, associated_limit
 from concio.solvers.statics.collapse_state import CollapseState, Motion, certify_collapse
@@ -241,7 +241,7 @@ class _Search:
             laws = replace(problem.laws, friction=zero, dilatancy=zero, cohesion=strength)
             self.programmes += 1
             try:
-                found = associated_limit(replace(problem, laws=laws), self.live)
+                found = associated_limit(replace(problem, laws=laws), self.live, target=FROZEN_TARGET)
             except SolverError:  # a load that presses on joints raises their strength, and that the load, past 1e16
                 break
             if not np.isfinite(found.multiplier) or found.mechanism is None:

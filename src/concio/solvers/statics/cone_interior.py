@@ -76,6 +76,7 @@ def maximise(
     *,
     start: Array | None = None,
     stop: Callable[[ConeAnswer], bool] | None = None,
+    target: float = CONE_TARGET,
 ) -> ConeAnswer:
     """Maximise the multiplier of g beside e, (r,) both, scaled so that the larger has entries of about one.
 
@@ -87,6 +88,8 @@ def maximise(
         Initial forces, strictly inside the cones.
     stop : callable, optional
         Looks at each iterate; true ends the iteration.
+    target : float
+        Residuals and relative gap at which it ends.
     """
     p = programme.start()
     programme.degenerate = False
@@ -96,7 +99,7 @@ def maximise(
     since, iteration, least = 0, 0, np.inf
     with np.errstate(all="ignore"):
         for iteration in range(CONE_ITERATIONS + 1):
-            r_p = programme.Ct @ p.t.ravel() + e + p.multiplier * g
+            r_p = programme.pull(p.t) + e + p.multiplier * g
             r_d = programme.rate(p.v) - programme.pressed(p.z, p.eta, p.w)
             r_d[~programme.rough, 1:] = 0.0
             r_g = 1.0 - float(g @ p.v)
@@ -115,7 +118,7 @@ def maximise(
                 least, best = worst, now
             if stop is not None and stop(now):
                 return now
-            if worst < CONE_TARGET or since > PATIENCE or iteration == CONE_ITERATIONS:
+            if worst < target or since > PATIENCE or iteration == CONE_ITERATIONS:
                 break
             step = Step.at(programme, p, g, r_p, r_d, r_g)
             following = None if step is None else step.mehrotra(gap)

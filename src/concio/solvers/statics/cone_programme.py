@@ -16,6 +16,7 @@ import scipy.sparse as sp
 
 from concio.problem.cone import Cone
 from concio.problem.contact_problem import Array, Engine
+from concio.problem.products import product
 from concio.problem.tolerances import SMOOTH
 from concio.solvers.algebra.block_factor import BlockFactor
 from concio.solvers.statics.pivoted import Mixed
@@ -167,8 +168,11 @@ class ConeProgramme:
 
     def rate(self, v: Array) -> Array:
         """Return C v (m, d)."""
-        rates: Array = (self.C @ v).reshape(self.pairs.count, self.pairs.dim)
-        return rates
+        return product(self.C, v).reshape(self.pairs.count, self.pairs.dim)
+
+    def pull(self, t: Array) -> Array:
+        """Return C't (r,)."""
+        return product(self.Ct, t.ravel())
 
     def strength(self, t: Array) -> Array:
         """Return beta (m, d); (1, 0) where there is no cone."""

@@ -18,7 +18,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.problem.contact_problem import Array, ContactProblem
-from concio.problem.tolerances import PROGRAMME_ROUNDING, PROGRAMME_SETTLED
+from concio.problem.tolerances import CONE_TARGET, PROGRAMME_ROUNDING, PROGRAMME_SETTLED
 from concio.solvers.algebra.scales import interleaved
 from concio.solvers.algebra.second_order_cone import determinant, times
 from concio.solvers.algebra.sparse_factor import SingularMatrixError
@@ -122,7 +122,7 @@ class ConeStatics:
     def balance(self, t: Array, load: Array) -> Array:
         """Return shifted forces next to ``t`` in balance with ``load`` (r,), moved in proportion to their room."""
         it = self.programme
-        residual = it.Ct @ t.ravel() + load
+        residual = it.pull(t) + load
         room = _room(it, t)
         try:
             it.factor.factorise(room, PROXIMAL * float(np.median(room[:, 0, 0])))
@@ -130,7 +130,7 @@ class ConeStatics:
             return t
         for _ in range(ROUNDS):
             trial = t - times(room, it.rate(it.factor.solve(residual)))
-            left = it.Ct @ trial.ravel() + load
+            left = it.pull(trial) + load
             if not np.abs(left).max(initial=0.0) < np.abs(residual).max(initial=0.0):
                 break
             t, residual = trial, left
@@ -156,7 +156,7 @@ class ConeStatics:
 
     def offset(self, load: Array) -> Array:
         """Return R'(load - C' of the shift of the forces) in units of the programme (r,)."""
-        offset: Array = self.project(load) - self.programme.Ct @ self.shift.ravel()
+        offset: Array = self.project(load) - self.programme.pull(self.shift)
         return offset
 
     def forces(self, normal: Array | None = None, close: float = np.inf) -> Balance:
@@ -175,7 +175,7 @@ class ConeStatics:
             unit = normal / self.force + self.shift[:, 0]
             unit = np.maximum(unit, LEAST * float(unit.mean()))
         ones[:, 0] = np.minimum(unit, 0.5 * it.pairs.cone.cap)
-        e, f = -(it.Ct @ ones.ravel()), self.offset(self.problem.f)
+        e, f = -(it.pull(ones)), self.offset(self.problem.f)
         g = f - e
         size = float(np.abs(g).max(initial=0.0))
         if not size > 0:
@@ -203,7 +203,7 @@ class ConeStatics:
             real, residual = (nearer, left) if left < residual else (real, residual)
         return Balance(real, residual, self.velocity(v), multiplier, self.real(at_bound)[:, 0])
 
-    def largest(self, live: Array, least: float = -np.inf) -> Bounds:
+    def largest(self, live: Array, least: float = -np.inf, target: float = CONE_TARGET) -> Bounds:
         """Search the largest multiplier of the live load (N,) beside the load of the problem.
 
         Parameters
@@ -212,11 +212,13 @@ class ConeStatics:
         least : float
             In units of the programme. A motion that excludes all multipliers from below this on ends the search without
             an answer, -inf: where no forces exist, the bound of the motions falls without bound.
+        target : float
+            Residuals and relative gap at which the search ends.
         """
         it = self.programme
         e, g = self.offset(self.problem.f), self.project(live)
         size = float(np.abs(g).max(initial=0.0))
-        answer = maximise(it, e, g / size, stop=lambda a: a.multiplier > ENDLESS or a.bound < least)
+        answer = maximise(it, e, g / size, stop=lambda a: a.multiplier > ENDLESS or a.bound < least, target=target)
         if answer.multiplier > ENDLESS:
             return Bounds(np.inf, self.real(answer.t), np.inf, self.velocity(answer.v))
         if answer.bound < least:

@@ -100,7 +100,7 @@ class Step:
                 trial = dx + y, dv + x, dl + extra
                 dt = times(self.F, trial[0])
                 left = (
-                    -r_p - it.Ct @ dt.ravel() - g * trial[2],
+                    -r_p - it.pull(dt) - g * trial[2],
                     b - times(Ft, it.rate(trial[1])) - trial[0],
                     r_g - float(g @ trial[1]),
                 )
@@ -121,7 +121,7 @@ class Step:
     def _condensed(self, e1: Array, e2: Array, e3: float) -> tuple[Array, Array, float]:
         """Solve by C'DC, the multiplier bordered: digits are lost where that matrix is worse than 1e16."""
         it, g = self.it, self.g
-        x = it.factor.solve(it.Ct @ times(self.F, e2).ravel() - e1)
+        x = it.factor.solve(it.pull(times(self.F, e2)) - e1)
         across = float(g @ self.border)
         extra = (e3 - float(g @ x)) / across if across else np.nan  # digits are lost: pivoting takes over
         x += extra * self.border
