@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import concio
 from concio.solvers.path.record import Outcome
 from concio.solvers.statics.associated_limit import associated_limit
 from path_helpers import energy_error, least_dissipation, weight_then, worst_certificate
@@ -55,3 +57,25 @@ def test_stiffness_of_the_joints_scales_displacements_only(assembly, mu, complia
     assert abs(one.peak - two.peak) <= 1e-9
     a, b = one.at(0.5 * one.peak), two.at(0.5 * one.peak)
     assert np.abs(10 * a.displacement - b.displacement).max() <= 1e-9 * np.abs(b.displacement).max()
+
+
+@pytest.mark.parametrize("seed", range(sample(1, 6)))
+def test_slips_and_offsets_of_a_state_are_those_of_its_displacements(seed: int) -> None:
+    """What a pair has slipped for good is its motion less what its compliance gives back, in metres, of any size."""
+    rng = np.random.default_rng([18, seed])
+    size = float(2.0 ** rng.integers(-6, 7))
+    model = concio.running_bond_panel(
+        courses=2, blocks=2, block_size=(0.4 * size, 0.2 * size), block=concio.Rigid(20.0), horizontal=1.0, base="full",
+        friction=float(rng.uniform(0.3, 0.6)), side_walls=False,
+    )  # fmt: skip
+    path = concio.run_path(model, [concio.Stage("dead", {"dead": 1.0}), concio.Stage("live", {"live": 1.0})])
+    slipped = 0
+    for step in path.steps[1:]:
+        state, problem = step.state, path.assembly.problem(step.factors)
+        closed = state.contact != 0
+        moved = (problem.C_t @ state.displacement)[:, None] - problem.slip_origin
+        moved = moved + problem.laws.tangential_compliance[:, None] * state.friction_force
+        unit = float(np.abs(state.displacement).max())
+        np.testing.assert_allclose(state.slip[closed], moved[closed], rtol=1e-9, atol=1e-9 * unit)
+        slipped += int((np.abs(state.slip[closed]) > 1e-6 * unit).sum())
+    assert slipped > 0

@@ -9,6 +9,7 @@ import pytest
 
 import concio
 from concio import Body, InputError, JointLaw, JointRule, Load, Model, Polyhedron, Rigid, Tie
+from concio.analysis.seismic.buttress import with_buttress
 from concio.analysis.seismic.strengthening import Measure
 from concio.contact.assembly import assemble
 from seismic_walls import courses
@@ -136,3 +137,27 @@ def test_a_buttress_in_space_has_the_multiplier_of_the_one_in_the_plane() -> Non
 def test_a_buttress_in_the_plane_has_no_side_along_y() -> None:
     with pytest.raises(InputError, match="no side '-y' in the plane"):
         Measure("buttress", ("c1",), side="-y").applied(pillar(0.0), 0.3)
+
+
+@pytest.mark.parametrize("side", ["-x", "+x", "-y", "+y"])
+def test_a_buttress_in_space_stands_on_the_ground_that_is_under_all_of_it(side: str) -> None:
+    """A wall of 2 x 0.3 x 3 m away from the origin: the body added, and the ground that it needs on every side."""
+
+    def on(low: tuple[float, ...], high: tuple[float, ...]) -> concio.Model:
+        bodies = (
+            concio.Polyhedron.box("ground", (*low, -1.0), (*high, 0.0), kind="fixed"),
+            concio.Polyhedron.box("wall", (1.0, 5.0, 0.0), (3.0, 5.3, 3.0), kind="rigid"),
+        )
+        return concio.Model(bodies, {"block": concio.Rigid(20.0)}, {"joint": concio.JointLaw(0.6)})
+
+    axis, sense = "xy".index(side[1]), 1.0 if side[0] == "+" else -1.0
+    made = with_buttress(on((-4.0, 0.0), (8.0, 9.0)), [1], side, 2.0, 0.5, 18.0).bodies[-1]
+    low, high = np.array([1.0, 5.0, 0.0]), np.array([3.0, 5.3, 2.0])
+    low[axis], high[axis] = (high[axis], high[axis] + 0.5) if sense > 0 else (low[axis] - 0.5, low[axis])
+    np.testing.assert_allclose((made.vertices.min(0), made.vertices.max(0)), (low, high))
+    for k in (0, 1):
+        for end in (0, 1):  # ground that ends 0.1 m short of the buttress on one of its four sides
+            span = [[-4.0, 0.0], [8.0, 9.0]]
+            span[end][k] = (low[k] + 0.1, high[k] - 0.1)[end]
+            with pytest.raises(concio.InputError, match="has no ground under it"):
+                with_buttress(on(tuple(span[0]), tuple(span[1])), [1], side, 2.0, 0.5, 18.0)
