@@ -264,7 +264,7 @@ def check(data: Data) -> str:
     how = f"proved, each number enclosed within {float(widest):.0e}" if widest else "proved exactly"
     states = [state for pair in data["states"] for state in pair]
     told = ", ".join(f"{states.count(s)} {s}" for s in ("open", "closed", "crushed"))
-    slips = f"{states.count('+') + states.count('-')} slip"
+    slips = f"{states.count('+') + states.count('-')} at the limit of friction"
     scales = not data["shapes"] and not any(law(joint, "gap") for joint in data["joints"])
     sizes = ", with these compliances or any multiple of them" if scales else ""
     acting = ", ".join(f"{group} x {float(exact(text)):g}" for group, text in data["constant"].items())
