@@ -150,3 +150,42 @@ def test_sensitivity_to_set_back_and_friction() -> None:
     varied = {(v.what, v.factor): v.multiplier for v in variations(found)}
     assert varied["friction", 0.8] == pytest.approx(found.worst.multiplier)  # type: ignore[union-attr]
     assert varied["strength", 0.5] == pytest.approx((27.42 - 84.4**2 / (2 * 1000.0)) / 271.2)
+
+
+WALL = """
+[walls]
+lines = [[[0.0, 0.0], [1.0, 0.0]]]
+height = 0.5
+block_size = [1.0, 0.25, 0.5]
+block = "rigid"
+unit_weight = 18.0
+friction = {friction}
+
+[assessment]
+direction = "+y"
+levels = ["SLV"]
+sensitivity = {asked}
+
+[site]
+soil = "B"
+building = {{ height = 6.0, storeys = 2 }}
+
+[site.hazard.SLV]
+a_g = 0.2
+F0 = 2.45
+Tc = 0.32
+"""
+
+
+def test_the_console_says_what_alpha_0_depends_on_or_why_it_has_no_derivatives(tmp_path: Path) -> None:
+    """A block in space: it slides under pressure at alpha_0 = friction, or tips at width over height."""
+    path, lines = tmp_path / "wall.toml", {}
+    for friction, asked in ((0.05, "true"), (0.9, "true"), (0.05, "false")):
+        path.write_text(WALL.format(friction=friction, asked=asked), encoding="utf-8")
+        shown = run("assess", path)[1]
+        assert f"alpha_0            {min(friction, 0.5):g}" in shown
+        lines[friction, asked] = [line.split(maxsplit=2)[2] for line in shown.splitlines() if "  depends on " in line]
+    (refused,), (told,) = lines[0.05, "true"], lines[0.9, "true"]
+    assert refused.startswith("no derivatives: in the weakest mechanism joints slide under pressure in space")
+    assert told.startswith("One per cent more of each changes the multiplier by: length of y +1 %, length of z -1 %")
+    assert lines[0.05, "false"] == []
