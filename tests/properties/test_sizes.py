@@ -17,11 +17,12 @@ import concio
 from concio import generate
 from concio.fem.polygon_mesh import mesh_polygon
 from concio.fem.tetrahedra import tetrahedra
+from concio.model.convex_pieces import convex_pieces
 from concio.model.model import Model
 from concio.model.polyhedron import Polyhedron
 from concio.model.surfaces import merged_faces
 from samples import sample
-from solids import l_block
+from solids import l_block, prism
 
 SCALES = [2.0**-9, 2.0**9]
 LARGEST = {"bridge": 2.0**5, "bridge of rings": 2.0**5}  # spans longer than any of masonry are refused
@@ -215,3 +216,30 @@ def test_triangles_of_one_plane_are_put_together_at_any_size(scale: float) -> No
     points, merged, _ = merged_faces(scale * corners, faces)
     assert sorted(len(face) for face in merged) == [3, 3, 3, 3, 4]
     assert len(points) == 5
+
+
+@pytest.mark.parametrize("scale", [2.0**-24, 2.0**-12, 2.0**12, 2.0**24])
+def test_a_block_of_any_size_is_cut_into_the_same_convex_pieces(scale: float) -> None:
+    base = np.array([[0, 0, 0], [2, 0, 0], [2.2, 1.1, 0], [1, 0.8, 0], [0, 2, 0]], dtype=float)
+    body = prism("arrow", [base], np.array([0.0, 0.0, 1.0]))
+    large = Polyhedron("arrow", np.asarray(body.vertices) * scale, body.faces)
+    pieces, found = convex_pieces(body), convex_pieces(large)
+    assert pieces is not None
+    assert found is not None
+    assert len(found) == len(pieces) > 1
+    for one, other in zip(pieces, found, strict=True):
+        np.testing.assert_allclose(other.vertices / scale, one.vertices, atol=1e-8)
+        np.testing.assert_allclose(other.offsets / scale, one.offsets, atol=1e-8)
+
+
+@pytest.mark.parametrize("scale", [2.0**-6, 1.0, 2.0**4])
+@pytest.mark.parametrize("wrong", [0.0, 1e-4, -1e-4])
+def test_headers_fill_two_wythes_or_do_not_at_any_size(wrong: float, scale: float) -> None:
+    size = (0.5 * scale, 0.25 * scale * (1 + wrong), 0.25 * scale)
+    made = {"lines": [((0, 0), (2.0 * scale, 0))], "height": 0.5 * scale, "block_size": size, "wythes": 2}
+    for bond in ({"bond": "english"}, {"bond": "running", "headers": 2}):
+        if wrong:
+            with pytest.raises(concio.InputError, match="do not fill two wythes"):
+                concio.walls(**made, **bond, friction=0.6)
+        else:
+            assert concio.walls(**made, **bond, friction=0.6).bodies
