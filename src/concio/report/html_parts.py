@@ -73,7 +73,8 @@ def verdict_html(verdict: Verdict, certificate: str, details: str = "", *, units
     asked, answer = question_html(verdict, units), f"<p><b>{escape(verdict.sentence)}</b></p>"
     head = f'<div class="verdict {verdict.tone}"><h2>{escape(verdict.headline)}</h2>{answer}'
     meaning = f"<p>{escape(verdict.meaning)}</p><p class=cert>{escape(certificate)}</p></div>"
-    return f"{head}{meaning}{asked}{details}<h3>What to do next</h3><ul>{steps}</ul>"
+    following = f"<h3>What to do next</h3><ul>{steps}</ul>" if steps else ""
+    return f"{head}{meaning}{asked}{details}{following}"
 
 
 def question_html(verdict: Verdict, units: Units = DEFAULT) -> str:

@@ -109,6 +109,8 @@ def test_no_page_is_in_two_languages(made: Callable[[str], str]) -> None:
     assert '<html lang="it">' in page
     assert re.findall(r'<span lang="en">(.*?)</span>', page) == []
     found = [m[0] for m in ENGLISH.finditer(visible(page))]
+    assert not re.search(r"<(ul|ol|tbody)[^>]*>\s*</", page), "a heading with nothing below it"
+    assert not re.search(r"\bstress\b", visible(page)), "tensione"
     assert found == [], [visible(page)[m.start() - 30 : m.end() + 30] for m in ENGLISH.finditer(visible(page))][:5]
 
 
