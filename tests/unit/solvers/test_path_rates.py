@@ -7,8 +7,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+import concio
 from concio.problem.cone import Cone
 from concio.solvers.lcp.linear_problem import LinearComplementarity
+from concio.solvers.path.equations import PathEquations
 from concio.solvers.path.rate_lcp import lemke
 from concio.solvers.path.rates import rates, values
 from lcp_oracles import infeasibility
@@ -78,3 +80,25 @@ def test_directions_of_a_vertex_solve_their_complementarity_problem():
             assert problem.residual(z) < 1e-9 * max(1.0, np.abs(z).max())
     assert lemke(np.array([[1e-12]]), np.array([-1.0])) is None
     assert lemke(np.array([[1e-3]]), np.array([-1.0])) == pytest.approx([1e3])
+
+
+def test_a_vertex_whose_states_form_a_mechanism_is_left_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What each critical pair answers is asked for only where the rate itself has an answer; the path goes on."""
+    model = concio.column(width=0.5, height=1.0, blocks=2, block="rigid", friction=0.6, horizontal=1.0)
+    refined, asked = PathEquations.refined, list[tuple[int, float]]()
+
+    def told(self: PathEquations, b: np.ndarray, rounds: int = 8) -> tuple[np.ndarray, float]:
+        x, residual = refined(self, b, rounds)
+        if b.ndim == 2:
+            residual = residual if solvable else 1.0
+            asked.append((b.shape[1], residual))
+        return x, residual
+
+    monkeypatch.setattr(PathEquations, "refined", told)
+    peaks = []
+    for solvable in (True, False):
+        asked.clear()
+        peaks.append(concio.limit(model, path=True, search=False).path.peak)
+        assert asked[0][0] == 1
+        assert any(columns > 1 for columns, _ in asked) == solvable
+    assert peaks[1] == pytest.approx(peaks[0], rel=1e-9)

@@ -176,7 +176,9 @@ def by_lemke(
     for i, sign in ((2, 1.0), (3, -1.0)):
         B[n + m + sets[i], pick[i]] = sign
         B[n + sets[i], pick[i]] += d.dilatancy[sets[i]] * closed[sets[i]]
-    X, residual = equations.refined(np.column_stack([unit, B]))
+    X, residual = equations.refined(unit[:, None])  # often this has no solution, and the others cost a hundred times it
+    if residual <= TRUE:
+        X, residual = equations.refined(np.column_stack([unit, B]))
     if residual > TRUE:
         blocked = self_stress(equations, X[:, 0]) is not None
         if not (blocked or lent):
