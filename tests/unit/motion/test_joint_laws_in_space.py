@@ -15,6 +15,7 @@ from concio.analysis.motion.certified import Returned
 from concio.analysis.motion.scheme import Drive
 from concio.analysis.motion.structures import structures_of
 from concio.contact.reference import Reference
+from concio.model.interfaces.detect import SLIVER_SHARE
 from models import box, model_of, weight
 from motion_models import G, standing
 from samples import sample
@@ -269,3 +270,26 @@ def test_forces_are_handed_from_pairs_that_end_to_pairs_that_begin_and_to_no_oth
         assert len(np.unique(source)) == len(source) == len(np.unique(target))
         handed += len(source)
     assert handed > 0
+
+
+SHAPES = {"plate": ((3.0, 3.0, 0.02), 5.0), "rod": ((0.02, 0.02, 3.0), 5.0), "cube on an edge": ((1.0, 1.0, 1.0), 0.1)}
+"""Sizes of a block, and where the floor below it ends."""
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_the_least_area_of_a_joint_goes_by_the_narrower_body_and_by_its_face(name):
+    """Three volumes over the surface, squared, or what the two faces have in common."""
+    (a, b, c), end = SHAPES[name]
+    bodies = (
+        concio.Polyhedron.box("floor", (-5.0, -5.0, -5.0), (end, end, 0.0), kind="fixed"),
+        concio.Polyhedron.box("b", (0.0, 0.0, 0.0), (a, b, c), kind="rigid"),
+    )
+    loads = (concio.Load("weight", (0.0, 0.0, -1.0)),)
+    law = concio.JointLaw(0.6, normal_stiffness=1e6, tangential_stiffness=5e5)
+    solid, state = stepper_of(concio.Model(bodies, {"block": concio.Rigid(20.0)}, {"joint": law}, loads=loads))
+    solid.step(state, 1e-4, Drive(np.zeros(3), np.zeros(3), {}))
+    layout = solid.maker.search.layout
+    narrow = 3.0 * a * b * c / (2.0 * (a * b + b * c + c * a))
+    wanted = SLIVER_SHARE * min(narrow**2, min(a, end) * min(b, end))
+    assert layout.toucher.joints.least == pytest.approx([wanted])
+    assert solid.certificate.original.named(layout).joints.least == pytest.approx([wanted])
