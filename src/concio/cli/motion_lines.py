@@ -20,6 +20,7 @@ from concio.io.solids_out import write_solids
 from concio.plot.motion_figure import plot_capacity, plot_energy, plot_ground, plot_history, write_film
 from concio.report.motion_page import HOW, write_motion_report
 from concio.units import GRAVITY
+from concio.verdict.verdict import Verdict
 
 MOST_LINES = 6
 """Lines of one kind in a short text."""
@@ -83,7 +84,7 @@ def shake_lines(result: DynamicsResult) -> list[str]:
 
 def write_motion(
     result: PushResult | DynamicsResult, place: Path, films: tuple[str, ...], series: bool,
-    language: Literal["en", "it"] = "en",
+    language: Literal["en", "it"] = "en", verdict: Verdict | None = None,
 ) -> list[str]:  # fmt: skip
     """Write summary, histories, figures, report, the motion itself, films and VTU files; return their names."""
     (place / "summary.json").write_text(
@@ -130,7 +131,7 @@ def write_motion(
             assert figure is not None
             figure.savefig(place / f"{name}.{form}", dpi=150)
         names.append(f"{name}.png")
-    write_motion_report(result, place / "report.html", language=language)
+    write_motion_report(result, place / "report.html", language=language, verdict=verdict)
     save_motion(result, place / "motion.npz")
     for film in films:
         try:

@@ -59,11 +59,18 @@ def run(
         answer(result_lines(result))
         if followed is not None:
             answer([f"  let go: {verdict.status}. {verdict.sentence}", *verdict.lines(model.report)])
+        elif let_go:
+            answer(["  let go: not released, as the load step is decided"])
     written: list[Path] = []
     if out is not None:
         from concio.io.result_dir import write_result
 
-        written = write_result(result, out, figures=figures, language=language)
+        def beside(place: Path) -> list[Path]:
+            from concio.cli.let_go_files import write_let_go
+
+            return [] if followed is None else write_let_go(followed, place, language)
+
+        written = write_result(result, out, figures=figures, language=language, beside=beside)
     if json:
         print_json((followed or result).summary())
     else:

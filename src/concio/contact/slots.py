@@ -186,9 +186,10 @@ class SlotMaker:
             t = placed.tangent[a] - placed.tangent[b]
             t /= norm(t)
             start, length = touch.point[i], float(touch.length[i])
-            past = length <= 0.0
+            least = 1e-9 * float(self.edges.length[a])  # two edges that only meet may have rounding in common
+            past = length <= least
             if past:
-                length = 1e-9 * float(self.edges.length[a])
+                length = least
             lines = [
                 line_of(
                     self.disc, int(own[e]), int(number[e]), float(dot(t, placed.start[e] - start)), forwards,

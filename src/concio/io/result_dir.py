@@ -18,6 +18,7 @@ before, and nothing that concio did not write is ever touched.
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -41,6 +42,7 @@ def write_result(
     figures: bool = True,
     report: bool = True,
     language: Literal["en", "it"] = "en",
+    beside: Callable[[Path], list[Path]] | None = None,
 ) -> list[Path]:
     """Write a result directory; what an earlier run wrote there is replaced, anything else stays.
 
@@ -52,6 +54,8 @@ def write_result(
         Whether to draw the figures and to write the HTML report.
     language : {"en", "it"}
         Of the report.
+    beside : callable, optional
+        Writes what was found beside the result into the directory it is given, and returns the files.
 
     Returns
     -------
@@ -68,6 +72,7 @@ def write_result(
     directory = Path(directory)
     with owned_directory(directory) as fresh:
         written = _write_all(result, fresh, figures, report, language)
+        written += beside(fresh) if beside is not None else []
     return [directory / path.relative_to(fresh) for path in written]
 
 

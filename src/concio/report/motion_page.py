@@ -20,6 +20,7 @@ from concio.post.motion_frames import box_of, frames, positions
 from concio.post.solid_frames import solid_frames
 from concio.report.html_parts import figure_html, page_html, resource, verdict_html
 from concio.report.italian_page import Language, figure_in, page_in, script_words, text_in
+from concio.verdict.verdict import Verdict
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -64,7 +65,7 @@ HOW = {
 
 @strict
 def write_motion_report(
-    result: PushResult | DynamicsResult, path: Path | str, *, language: Language = "en"
+    result: PushResult | DynamicsResult, path: Path | str, *, language: Language = "en", verdict: Verdict | None = None
 ) -> Path:
     """Write the report of a push or a time history.
 
@@ -73,6 +74,8 @@ def write_motion_report(
     result : PushResult or DynamicsResult
     path : Path or str
     language : {"en", "it"}
+    verdict : Verdict, optional
+        What the motion was followed for; by default its own.
 
     Returns
     -------
@@ -80,11 +83,13 @@ def write_motion_report(
         ``path``.
     """
     path = Path(path)
-    path.write_text(motion_html(result, language), encoding="utf-8")
+    path.write_text(motion_html(result, language, verdict), encoding="utf-8")
     return path
 
 
-def motion_html(result: PushResult | DynamicsResult, language: Language = "en") -> str:
+def motion_html(
+    result: PushResult | DynamicsResult, language: Language = "en", verdict: Verdict | None = None
+) -> str:
     """Return the report as a text; see :func:`write_motion_report`."""
     title = result.model.title or ("Pushed over" if isinstance(result, PushResult) else "Motion")
 
@@ -107,7 +112,7 @@ def motion_html(result: PushResult | DynamicsResult, language: Language = "en") 
     text = json.dumps(data, separators=(",", ":")).replace("<", "\\u003c")
     body = (
         f'<header><p class="brand">concio</p><h1{kept}>{escape(title)}</h1></header>'
-        f"<section id=verdict>{_verdict(result)}</section>"
+        f"<section id=verdict>{_verdict(result, verdict or result.verdict)}</section>"
         f"{moves}<section id=figures><h2>Figures</h2>{figures}</section>"
         f"<section id=tables>{tables}</section>"
         f"<footer>Written by concio {escape(concio.__version__)}. Forces in kN, lengths in m, time in s.</footer>"
@@ -174,9 +179,9 @@ def _film(result: PushResult | DynamicsResult) -> dict[str, Any]:
     }
 
 
-def _verdict(result: PushResult | DynamicsResult) -> str:
+def _verdict(result: PushResult | DynamicsResult, verdict: Verdict) -> str:
     """Return the verdict of a motion as its own section, word for word what every other place says."""
-    return verdict_html(result.verdict, result.verdict.proof, units=result.model.report)
+    return verdict_html(verdict, verdict.proof, units=result.model.report)
 
 
 def _events(result: PushResult) -> str:

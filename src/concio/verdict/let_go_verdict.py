@@ -78,7 +78,7 @@ def let_go_verdict(found: LetGo) -> Verdict:
         return replace(step, question=question, answer=f"{step.answer} {_seen(found)}")
     outcome = _outcome(found)
     limits = [*step.limits, *(line for line in motion.limits if line not in step.limits), ONE_MOTION]
-    if found.motion.reference.meshed.size or found.motion.model.ties:
+    if found.fades:
         limits.append(FADING)
     return Verdict(
         outcome=outcome,
@@ -119,7 +119,7 @@ def _seen(found: LetGo) -> str:
         return f"Released at rest it falls: after {time} {said}."
     if motion.rests:
         give = ""
-        if motion.lent_compliance:
+        if motion.lent_compliance and found.hard:
             sunk = units.text("motion", found.sunk, 2)
             give = f" That is shown for joints between rigid blocks that give way by up to {sunk}, not for hard ones."
         rests = f"Released at rest it comes to rest after {time}, in an equilibrium that was certified there"

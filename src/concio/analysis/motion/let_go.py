@@ -37,6 +37,12 @@ FINE = 0.01
 FADES = 1.0
 """Theta of the scheme: vibrations of elastic blocks and joints fade, which nothing else would take away."""
 
+FADING = 0.1
+"""Stiffness damping of joints with a stiffness and of ties, over the time in which a body falls by half its width.
+
+Blocks that rock on mortar go back and forth slowly enough for the scheme to take next to nothing: seconds, for walls
+of a metre. Where nothing moves damping carries nothing, so it changes no place of rest that is certified."""
+
 
 @dataclass(frozen=True, eq=False)
 class LetGo(Shown):
@@ -65,6 +71,17 @@ class LetGo(Shown):
         far[reference.disc.shape_of == FIXED] = -1.0
         b = int(np.argmax(far / np.where(width > 0, width, 1.0)))
         return self.motion.model.bodies[b].name, float(far[b]), float(width[b])
+
+    @property
+    def fades(self) -> bool:
+        """Whether vibrations fade in the motion by what the scheme, or damping of joints and ties, takes away."""
+        return bool(self.motion.reference.meshed.size or self.motion.scheme.stiffness_damping)
+
+    @property
+    def hard(self) -> bool:
+        """Whether any joint has no stiffness of its own."""
+        laws = self.motion.reference.laws
+        return not bool((laws.normal[: len(self.motion.model.laws)] > 0).all())
 
     @property
     def speed(self) -> float:
@@ -110,7 +127,8 @@ def let_go(
     """Let a structure go at rest, with its masses, and follow it until it rests, falls, or enough was spent on it.
 
     Meant for a load step that stays undecided near its limit. The motion is that of :func:`concio.dynamics` at large
-    displacements, from the bodies as described, with every step certified. Where it ends at rest, an equilibrium was
+    displacements, from the bodies as described, with every step certified. Blocks may be elastic, joints may have a
+    stiffness, and ties may hold blocks: what vibrates in them fades. Where it ends at rest, an equilibrium was
     certified where the bodies stand. Where it moves away, that is what was seen of one motion and no proof that no
     equilibrium exists.
 
@@ -159,6 +177,8 @@ def let_go(
     size = float((corners.max(axis=0) - corners.min(axis=0)).max())
     long = LONG * float(np.sqrt(size / gravity)) if duration is None else duration
     fine = FINE * float(np.sqrt(width / gravity)) if step is None else step
+    sprung = bool(reference.laws.normal.any() or reference.laws.tangential.any() or model.ties)
+    fades = FADING * float(np.sqrt(width / gravity)) if sprung else 0.0
     many = reference.disc.unknowns + len(result.assembly.pairs)
     most = int(np.clip(LET_GO_WORK // many, LEAST_LET_GO, MOST_LET_GO))
     worked = False
@@ -170,7 +190,8 @@ def let_go(
 
     motion = dynamics(
         model, None, long, fine, factors=dict(result.factors), gravity=gravity, theta=FADES,
-        start=MotionState.at_rest(reference), stop_overturned=True, stop_at_rest=True, progress=enough,
+        stiffness_damping=fades, start=MotionState.at_rest(reference), stop_overturned=True, stop_at_rest=True,
+        progress=enough,
     )  # fmt: skip
     return LetGo(result, motion, worked)
 
