@@ -26,6 +26,7 @@ from concio.analysis.path_ties import begin_of_yield, breaking, tie_name, until_
 from concio.arguments import closest, strict
 from concio.contact.assembly import PRESTRESS, Assembly
 from concio.contact.factors import load_factor
+from concio.display import counted
 from concio.errors import InputError, SolverError
 from concio.model.model import Model
 from concio.model.stages import ControlPoint, Stage
@@ -263,13 +264,13 @@ def _finite_steps(stage: Stage, exact: EventPath) -> list[str]:
     found = []
     if jumps:
         found.append(
-            f"stage '{stage.name}': {len(jumps)} jumps, the first at {jumps[0]:.6g}: no state follows on the one "
-            "before, and the path goes on from the state in equilibrium found under a slightly larger load"
+            f"stage '{stage.name}': {counted(len(jumps), 'jump')}, the first at {jumps[0]:.6g}: no state follows on "
+            "the one before, and the path goes on from the state in equilibrium found under a slightly larger load"
         )
     if restarts:
         found.append(
-            f"stage '{stage.name}': {len(restarts)} finite steps, the first at {restarts[0]:.6g}, where no rates were "
-            "found that continue the path"
+            f"stage '{stage.name}': {counted(len(restarts), 'finite step')}, the first at {restarts[0]:.6g}, where no "
+            "rates were found that continue the path"
         )
     return found
 

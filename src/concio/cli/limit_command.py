@@ -14,6 +14,8 @@ from concio.cli.progress import found_so_far, on_the_way, progress_bar, verdict_
 from concio.problem.limits_of_work import LARGEST_MARGIN
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from concio.analysis.limit import LimitResult
 
 
@@ -68,10 +70,10 @@ def limit(
     from concio.display import counted
     from concio.verdict.limit_words import limit_lines, solving_line, stage_lines
 
-    groups = list(group or ["live"])
     if out is not None:
         check_directory(out)
     assembly = concio.assemble(loaded(file, units, engine))
+    groups = _multiplied(file, group, assembly.groups)
     if not json:
         size = counted(len(assembly.model.free_bodies), "block"), counted(len(assembly.pairs), "contact pair")
         on_the_way([f"  {'model':<20} {' and '.join(size)}; the associated bound is sought first"])
@@ -118,3 +120,20 @@ def limit(
     if json:
         print_json(told)
     return verdict.exit_code
+
+
+def _multiplied(file: Path, asked: list[str] | None, known: Sequence[str]) -> list[str]:
+    """Return the load groups to multiply, "live" where none is named; one that the model does not have is refused."""
+    from concio.analysis.limit import LIVE
+    from concio.arguments import closest
+    from concio.errors import InputError
+
+    if not asked and LIVE not in known:
+        msg = f"there is no load group '{LIVE}', which is multiplied where --group names no other"
+        hint = f"name one with --group ({', '.join(known) or 'there is none'}), or add [[loads]] with group = '{LIVE}'"
+        raise InputError(msg, where=str(file), hint=hint)
+    for name in asked or ():
+        if name not in known:
+            msg = f"there is no load group '{name}'"
+            raise InputError(msg, where=str(file), hint=closest(name, known, names="groups"))
+    return asked or [LIVE]

@@ -311,7 +311,8 @@ class _Words:
             shown = [self.say("high", name=self.name(n), z=float(z)) for n, z in values["names"][:MOST_NAMES]]
             more = len(values["names"]) - len(shown)
             values["names"] = ", ".join([*shown, self.say("and_more", n=more)] if more else shown)
-        return self.say(f"open_{item.kind}", **values)
+        live = ", live" if item.kind == "out of plane" and self.found.arguments.get("live") else ""
+        return self.say(f"open_{item.kind}{live}", **values)
 
 
 def _reason(key: str) -> str:

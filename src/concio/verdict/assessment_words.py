@@ -74,6 +74,8 @@ EN = {
     "open_height": "the amplification at height of {names}: give [site.building]",
     "open_out of plane": "the facade out of its plane: the model is wider than it is thick, and moves in its plane "
     "alone",
+    "open_out of plane, live": "the facade out of its plane: 'live' names the loads that are multiplied, and they act "
+    "in its plane; without 'live' it is searched out of its plane too",
     "open_curve": "'{name}', push {way}, at {levels}: its curve is not conclusive ({reason})",
     "open_strips": "{n} mechanisms of strips out of the plane, at {levels}, the first of them '{name}', push {way}, "
     "with alpha_0 {alpha}: their curve is not conclusive ({reason})",
@@ -186,6 +188,8 @@ IT = {
     "open_height": "l'amplificazione in quota di {names}: indicare [site.building]",
     "open_out of plane": "la facciata fuori dal suo piano: il modello è più largo che spesso, e si muove solo nel "
     "piano",
+    "open_out of plane, live": "la facciata fuori dal suo piano: «live» nomina i carichi moltiplicati, che agiscono "
+    "nel suo piano; senza «live» è cercata anche fuori dal piano",
     "open_curve": "«{name}», spinta {way}, allo {levels}: la curva non è conclusiva ({reason})",
     "open_strips": "{n} meccanismi di strisce fuori dal piano, allo {levels}, il primo «{name}», spinta {way}, con "
     "alpha_0 {alpha}: la loro curva non è conclusiva ({reason})",

@@ -141,13 +141,18 @@ class _Words:
         if found.doubts:
             return " ".join(map(self.doubt, found.doubts))
         if found.nearest is None:
-            return self.say("none_at_all", most=found.most)
+            return self.say("none_at_all", most=self.looked)
         near = found.nearest
         worst = int(abs(near.residual).argmax())
         return self.say(
-            "none", most=found.most, cause=self.cause(near, intervals=False), misfit=near.misfit,
+            "none", most=self.looked, cause=self.cause(near, intervals=False), misfit=near.misfit,
             allowed=self.allowed(near), worst=found.measurements[worst].name, away=abs(float(near.residual[worst])),
         )  # fmt: skip
+
+    @property
+    def looked(self) -> int:
+        """The most motions that were tried together."""
+        return max((len(t.chosen) for t in self.found.trials), default=0)
 
     def one(self, cause: Cause) -> str:
         """Return a cause with its misfit."""
@@ -281,9 +286,8 @@ class _Words:
         told = [*joints_not_made(found.assembly.detection), self.words["together"], self.words["small"]]
         if found.lent:
             told.append(self.say("lent", size=self.write(found.lent, 3)))
-        looked = max((len(t.chosen) for t in found.trials), default=0)
-        if looked < len(found.candidates):
-            told.append(self.say("sparse", size=looked))
+        if self.looked < len(found.candidates):
+            told.append(self.say("sparse", size=self.looked))
         if found.left:
             told.append(self.say("left" if found.left > 1 else "left_one", count=found.left, far=f"{FAR:g}"))
         if not found.causes:

@@ -18,14 +18,15 @@ EN = {
     "headline_lost": "No cause was found, and not every choice of motions could be computed",
     "headline_partly": "One cause explains the measurements, and not every choice of motions could be computed: "
     "{cause}",
-    "one": "The measurements are explained by {cause}. Misfit {misfit} with {freedom} degrees of freedom, {allowed} is "
-    "allowed.",
-    "rest": "The measurements are explained without any motion. Misfit {misfit} with {freedom} degrees of freedom, "
-    "{allowed} is allowed.",
+    "one": "The measurements are explained by {cause}. Misfit {misfit}, {allowed} is allowed (degrees of freedom: "
+    "{freedom}).",
+    "rest": "The measurements are explained without any motion. Misfit {misfit}, {allowed} is allowed (degrees of "
+    "freedom: {freedom}).",
     "several": "The measurements are explained by {count} causes alike, the simplest first: {causes}.",
-    "none": "No choice of up to {most} motions explains the measurements. The nearest is {cause}: misfit {misfit}, "
-    "{allowed} is allowed; farthest off is '{worst}', by {away} errors.",
-    "none_at_all": "No choice of up to {most} motions explains the measurements, and none could be computed.",
+    "none": "No choice of motions explains the measurements (at most {most} together). The nearest is {cause}: misfit "
+    "{misfit}, {allowed} is allowed; farthest off is '{worst}', by {away} errors.",
+    "none_at_all": "No choice of motions explains the measurements (at most {most} together), and none could be "
+    "computed.",
     "doubt": "Without measurement '{name}', the others are explained by {cause}; it was measured as {measured}, and "
     "{predicted} is predicted ({away} standard deviations apart). {mistake}",
     "mistake_sign": "Its sign may have been mistaken.",
@@ -100,13 +101,13 @@ IT = {
     "headline_forced": "Una causa è compatibile con le misure, ma comprime tra loro conci rigidi: {cause}",
     "headline_lost": "Nessuna causa trovata, e non tutte le scelte di movimenti sono state calcolate",
     "headline_partly": "Una causa spiega le misure, e non tutte le scelte di movimenti sono state calcolate: {cause}",
-    "one": "Le misure sono spiegate da {cause}. Scarto {misfit} con {freedom} gradi di libertà, ammesso {allowed}.",
-    "rest": "Le misure sono spiegate senza alcun movimento. Scarto {misfit} con {freedom} gradi di libertà, ammesso "
-    "{allowed}.",
+    "one": "Le misure sono spiegate da {cause}. Scarto {misfit}, ammesso {allowed} (gradi di libertà: {freedom}).",
+    "rest": "Le misure sono spiegate senza alcun movimento. Scarto {misfit}, ammesso {allowed} (gradi di libertà: "
+    "{freedom}).",
     "several": "Le misure sono spiegate ugualmente da {count} cause, dalla più semplice: {causes}.",
-    "none": "Nessuna scelta fino a {most} movimenti spiega le misure. La più vicina è {cause}: scarto {misfit}, "
-    "ammesso {allowed}; la più lontana è '{worst}', di {away} errori.",
-    "none_at_all": "Nessuna scelta fino a {most} movimenti spiega le misure, e nessuna è stata calcolata.",
+    "none": "Nessuna scelta di movimenti spiega le misure (al più {most} insieme). La più vicina è {cause}: scarto "
+    "{misfit}, ammesso {allowed}; la più lontana è '{worst}', di {away} errori.",
+    "none_at_all": "Nessuna scelta di movimenti spiega le misure (al più {most} insieme), e nessuna è stata calcolata.",
     "doubt": "Senza la misura '{name}', le altre sono spiegate da {cause}; è stata misurata {measured}, il valore "
     "previsto è {predicted} (a {away} scarti tipo). {mistake}",
     "mistake_sign": "Forse il segno è errato.",

@@ -9,6 +9,7 @@ from concio.model.self_weight import weight_groups, weightless
 from concio.problem.tolerances import CERTIFIED
 from concio.solvers.path.record import Outcome as Ended
 from concio.verdict.attention import SO_WITH, attention, joints_not_made
+from concio.verdict.odd_weights import odd_weights
 from concio.verdict.question import Question, question_of
 from concio.verdict.unseen import unseen
 from concio.verdict.verdict import Outcome, Verdict
@@ -145,7 +146,7 @@ def _answer(found: PathResult, outcome: Outcome) -> str:
     parts += [f"{_capital(line)}." for line in gone]
     missing = joints_not_made(found.assembly.detection)
     parts += [SO_WITH] if missing and outcome is Outcome.FAILS else []
-    parts += [f"{_capital(line)}." for line in missing]
+    parts += [f"{_capital(line)}." for line in (*missing, *odd_weights(found.assembly.model))]
     return " ".join(filter(None, parts))
 
 

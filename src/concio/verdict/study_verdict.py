@@ -235,8 +235,8 @@ def _mixed(study: StudyResult) -> tuple[str, ...]:
         else ""
     )
     return (
-        f"load group '{group}' acts with factor {number(factor)} in {', '.join(fixed)}, while "
-        f"{', '.join(multiplying)} multiply it from 0{hint}",
+        f"load group '{group}' acts with factor {number(factor)} in {', '.join(fixed)}, and is multiplied "
+        f"from 0 in {', '.join(multiplying)}{hint}",
     )
 
 

@@ -62,6 +62,9 @@ WALL = "[wall]\nlength = 1.0\nheight = 0.5\nblock_size = [0.5, 0.25]\n"
         (WALL + 'friction = "steel"\n', ("check",), "give a number, or define [joints.steel]"),
         (WALL + 'block = "oak"\n', ("check",), "define [materials.oak]"),
         (WALL, ("study",), "there is no table [study]"),
+        (WALL, ("limit",), "where --group names no other -> name one with --group (dead), or add [[loads]]"),
+        (WALL, ("limit", "--group", "daed"), "there is no load group 'daed' -> did you mean 'dead'?"),
+        ("[[blocks]]\nname = 'a'\nbox = [[0, 0], [1, 1]]\n", ("check",), "in the plane: rectangle = [[x, y], [x, y]]"),
         (WALL, ("path", "--until", "5 mm"), "--until: it is a displacement of a control point, and no control point"),
         ('[wall]\nlength = "1 foot"\n', ("check",), "use m, or another unit made of N, kN"),
     ],
@@ -74,6 +77,14 @@ def test_what_is_missing_is_named_with_what_to_add(
     code, _, err = run(asked[0], path, *asked[1:])
     assert code == 2
     assert said in " ".join(err.split())
+    assert err.startswith("Error: "), "nothing comes before the one message"
+
+
+def test_a_path_without_self_weight_says_so_in_its_answer() -> None:
+    ground, pillar = box("ground", 0, 1, -0.2, 0, kind="fixed"), box("pillar", 0, 1, 0, 2)
+    model = model_of(ground, pillar, loads=(), supports=(concio.Support("sinks", "ground", displacement=(0, -0.01)),))
+    found = concio.settle(model)
+    assert "Self-weight does not act: 1 block has a unit weight" in found.path.verdict.sentence
 
 
 def test_a_kind_that_there_is_not_is_told_without_words_of_a_library() -> None:

@@ -144,7 +144,7 @@ def test_what_no_candidate_explains_is_told() -> None:
     assert found.verdict.status == "no_cause"
     assert found.verdict.exit_code == 3
     assert found.nearest is not None
-    assert "explains the measurements" in found.verdict.sentence
+    assert "explains the measurements (at most 1 together)" in found.verdict.sentence
     assert any("may have been missed" in line for line in found.verdict.limits)
 
 

@@ -287,7 +287,9 @@ def test_a_facade_in_elevation_can_leave_its_plane() -> None:
     assert found.worst is not None
     assert found.worst.multiplier == pytest.approx(1.0 / 1.5, rel=1e-9)  # thickness over height
     pushed = replace(wide, loads=(*wide.loads, Load("weight", (1.0, 0.0), group="masses")))
-    assert assessed(pushed, site=site(hazard=QUIET), live="masses").open[-1].kind == "out of plane"
+    in_plane = assessed(pushed, site=site(hazard=QUIET), live="masses")
+    assert in_plane.open[-1].kind == "out of plane"
+    assert "without 'live' it is searched out of its plane" in in_plane.verdict.unchecked[-1]
     answered = assessed(wide, site=site(hazard=QUIET), elsewhere=["out of plane"])
     assert answered.verdict.outcome is Outcome.HOLDS
 

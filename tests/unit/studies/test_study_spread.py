@@ -167,7 +167,8 @@ def test_half_of_the_pillars_cannot_carry_their_wind() -> None:
 def test_what_multiplies_and_what_acts_is_told_and_chosen() -> None:
     both = pillar(["stands", "friction_factor", "load_margin"])
     assert both.values("stands").max() == 0.0
-    assert any("'live' acts with factor 1 in stands, friction_factor" in line for line in both.verdict.attention)
+    told = "'live' acts with factor 1 in stands, friction_factor, and is multiplied"
+    assert any(told in line for line in both.verdict.attention)
     without = pillar(["stands", "friction_factor", "load_margin"], factors={"live": 0.0})
     stands = without.values("stands")
     assert stands.tolist() == (without.values("H") < 1.6).tolist()

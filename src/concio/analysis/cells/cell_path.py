@@ -23,6 +23,7 @@ from concio.analysis.path_result import NamedEvent, named_event
 from concio.arguments import strict
 from concio.contact.assembly import Assembly
 from concio.contact.macroscopic_strain import COMPONENTS
+from concio.display import counted
 from concio.errors import InputError
 from concio.model.model import Model
 from concio.model.stages import Stage
@@ -308,9 +309,9 @@ def _walk(
     exact = follow(path, state, until=1.0, max_events=max_events, progress=progress)
     jumps = [e.parameter for e in exact.jumps]
     restarts = [e.parameter for e in exact.events if e.kind == "restarts"]
-    for word, where in (("jumps", jumps), ("finite steps", restarts)):
+    for word, where in (("jump", jumps), ("finite step", restarts)):
         if where:
-            notes.append(f"stage '{stage.name}': {len(where)} {word}, the first at {where[0]:.6g} of its stage")
+            notes.append(f"stage '{stage.name}': {counted(len(where), word)}, the first at {where[0]:.6g} of its stage")
     if exact.outcome is not Outcome.TOO_MANY:
         return StepPath(exact.states, exact.events, exact.outcome, exact.direction)
     notes.append(f"stage '{stage.name}': after {len(exact.events)} events continued in {stage.steps} steps")

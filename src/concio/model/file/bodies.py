@@ -89,7 +89,8 @@ def _solid(table: BlockTable, materials: Materials) -> Polyhedron:
     if table.box is not None:
         if any(len(p) != 3 for p in table.box):
             msg = "a corner of the box has two coordinates"
-            raise InputError(msg, hint="box = [[x, y, z], [x, y, z]]")
+            hint = "in space: box = [[x, y, z], [x, y, z]]; in the plane: rectangle = [[x, y], [x, y]]"
+            raise InputError(msg, hint=hint)
         low, high = (f(table.box, axis=0).tolist() for f in (np.min, np.max))
         return Polyhedron.box(table.name, low, high, **words)
     assert table.vertices is not None

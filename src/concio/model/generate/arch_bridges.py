@@ -230,13 +230,13 @@ def _in_metres(where: str, spans: Sequence[float], ring: float) -> None:
     ------
     InputError
     """
-    hint = "a bare number is in m: write '6000 mm' where it is in millimetres; of a drawing, unit in [bridge_drawing]"
+    hint = "a bare number is in m: give the unit with it, such as '{:g} {}'; of a drawing, unit in [bridge_drawing]"
     if not max(spans) <= LONGEST:
         msg = f"a span of {max(spans):g} m is longer than any of masonry"
-        raise InputError(msg, where=where, hint=hint)
+        raise InputError(msg, where=where, hint=hint.format(max(spans), "mm" if max(spans) >= 1000 else "cm"))
     if not ring < min(spans):
         msg = f"a ring of {ring:g} m is thicker than the span of {min(spans):g} m is long"
-        raise InputError(msg, where=where, hint=hint)
+        raise InputError(msg, where=where, hint=hint.format(ring, "mm" if ring >= 100 else "cm"))
 
 
 def _lengths(where: str, name: str, given: Any, number: int | None = None, most: int = 100) -> list[float]:
