@@ -1,4 +1,4 @@
-"""A progress bar on standard error while a solver works; none where standard error is not a terminal."""
+"""A progress bar on standard error while a solver works; where that is not a terminal, a line every ten seconds."""
 
 from __future__ import annotations
 
@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 from concio.cli.outcome import QUIET
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from concio.problem.solution import Progress, ProgressCallback
     from concio.verdict.verdict import Verdict
 
@@ -21,6 +23,8 @@ TARGET = 1e-6
 
 OFTEN = 0.1
 """A listener receives progress at most once in this time [s]."""
+SELDOM = 10.0
+"""Seconds between lines about the progress where standard error is not a terminal."""
 SOON = 5.0
 """Seconds after which the time left is reported."""
 
@@ -33,10 +37,11 @@ LISTENER: ContextVar[Callable[[str, Any], None] | None] = ContextVar("listener",
 
 @contextmanager
 def progress_bar(*, shown: bool) -> Iterator[ProgressCallback | None]:
-    """Give a callback that moves a bar, or None where there is nobody to see it.
+    """Give a callback that moves a bar, or None where nothing is to be shown.
 
     The bar shows how far the residual has fallen on a logarithmic scale; it never goes back. Long runs tell how much
-    time is left if the residual goes on falling as it did.
+    time is left if the residual goes on falling as it did. Where standard error is not a terminal, the words beside the
+    bar are printed there every :data:`SELDOM` seconds: a log shows what a long run does.
     """
     listener, share, left = LISTENER.get(), Share(), TimeLeft()
     if listener is not None:
@@ -52,8 +57,21 @@ def progress_bar(*, shown: bool) -> Iterator[ProgressCallback | None]:
 
         yield report
         return
-    if not shown or QUIET.get() or not sys.stderr.isatty():
+    if not shown or QUIET.get():
         yield None
+        return
+    if not sys.stderr.isatty():
+        printed = time.monotonic()
+
+        def beat(state: Progress) -> None:
+            nonlocal printed
+            now = time.monotonic()
+            text = share.after(state) + left.after(share.best, now)
+            if now - printed >= SELDOM:
+                printed = now
+                on_the_way([f"  {'at work':<20} {text}"])
+
+        yield beat
         return
     from rich.console import Console
     from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
@@ -98,6 +116,13 @@ def on_the_way(lines: list[str]) -> None:
     """Print on standard error what is known on the way, unless it is a terminal, which has a bar."""
     if not QUIET.get() and not sys.stderr.isatty():
         sys.stderr.write("".join(f"so far:{line}\n" for line in lines))
+        sys.stderr.flush()
+
+
+def being_written(place: Path) -> None:
+    """Say on standard error that a report is written now, which may take longer than the answer did."""
+    if not QUIET.get() and LISTENER.get() is None:
+        sys.stderr.write(f"so far:  {'at work':<20} the report and its figures are written to {place}\n")
         sys.stderr.flush()
 
 

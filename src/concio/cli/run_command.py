@@ -10,7 +10,7 @@ import typer
 from concio.cli.options import EngineOf, Factors, File, Json, Language, Out, Quiet, UnitsOf, factors_of, in_units
 from concio.cli.outcome import answer, guarded, print_json
 from concio.cli.output import check_directory
-from concio.cli.progress import progress_bar, verdict_so_far
+from concio.cli.progress import being_written, progress_bar, verdict_so_far
 
 if TYPE_CHECKING:
     from concio.analysis.motion.let_go import LetGo
@@ -70,6 +70,8 @@ def run(
 
             return [] if followed is None else write_let_go(followed, place, language)
 
+        if not json:
+            being_written(out)
         written = write_result(result, out, figures=figures, language=language, beside=beside)
     if json:
         print_json((followed or result).summary())

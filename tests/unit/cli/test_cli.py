@@ -386,12 +386,30 @@ def test_a_full_disk_leaves_what_was_there(panel: Path, monkeypatch: pytest.Monk
     assert {p.name for p in Path().iterdir()} == {"panel.toml", "result"}
 
 
-def test_no_progress_bar_where_nobody_looks(panel: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    from concio.cli.progress import progress_bar
+def test_where_there_is_no_terminal_a_line_from_time_to_time_says_what_is_done(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from concio.cli import progress
 
-    with progress_bar(shown=True) as callback:
-        assert callback is None
-    assert capsys.readouterr().err == ""
+    clock = [100.0]
+    monkeypatch.setattr(progress.time, "monotonic", lambda: clock[0])
+    with progress.progress_bar(shown=True) as callback:
+        assert callback is not None
+        for second in range(25):
+            clock[0] = 100.0 + second
+            callback(Progress("assessment", second, 1.0 - second / 40, message=f"part {second}"))
+    with progress.progress_bar(shown=False) as nothing:
+        assert nothing is None
+    lines = capsys.readouterr().err.splitlines()
+    assert lines == [
+        "so far:  at work              assessment, part 10, about 30 s left",
+        "so far:  at work              assessment, part 20, about 20 s left",
+    ]
+
+
+def test_a_run_says_when_its_report_is_being_written(panel: Path) -> None:
+    told = "the report and its figures are written to result"
+    assert told in run("run", panel, "--out", "result", "--no-figures")[2]
 
 
 def test_the_bar_moves_forward_only(monkeypatch: pytest.MonkeyPatch) -> None:
