@@ -30,9 +30,9 @@ Array = np.ndarray
 
 @dataclass(frozen=True)
 class Family:
-    """An element family: name in scikit-fem, corners, quadrature order, order of its edges, dimension."""
+    """An element family: class of scikit-fem or its name, corners, quadrature order, order of its edges, dimension."""
 
-    element: str
+    element: str | type
     cells: int
     quadrature: int
     edge_order: int
@@ -141,7 +141,7 @@ def build(points: Array, cells: Array, name: str, D: Array) -> Elements:
     chosen, cells = _fitting(family(name), cells)
     order = VERTICES.get(chosen.cells if chosen.dim == 3 else 0)
     own = cells if order is None else cells[:, order]
-    element: Any = getattr(skfem, chosen.element)
+    element: Any = getattr(skfem, chosen.element) if isinstance(chosen.element, str) else chosen.element
     mesh_type = {(2, 4): skfem.MeshQuad, (2, 3): skfem.MeshTri, (3, 8): skfem.MeshHex, (3, 4): skfem.MeshTet}
     mesh = mesh_type[chosen.dim, chosen.cells](np.ascontiguousarray(points.T), np.ascontiguousarray(own.T))
     basis = skfem.Basis(mesh, element(), intorder=chosen.quadrature)
