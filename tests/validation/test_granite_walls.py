@@ -33,7 +33,7 @@ def test_elastic_wall_snaps_and_carries_on():
     jumps = [e for e in found.events if e.kind == "jumps"]
     assert jumps
     assert jumps[0].parameter * 21.5 == pytest.approx(20.898, abs=1e-3)
-    assert any("jumps" in note for note in found.notes)
+    assert any("jump" in note for note in found.notes)
     assert found.certificate <= 1e-9
     assert found.energy_error <= 1e-9
     assert np.diff([s.state.dissipation for s in found.steps]).min() >= -1e-12

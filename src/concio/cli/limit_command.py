@@ -67,13 +67,14 @@ def limit(
     from concio.analysis.limit import limit_stages
     from concio.analysis.margins import friction_by_solving, load_margin
     from concio.cli.limit_files import write_limit
+    from concio.contact.assembly import as_assembly
     from concio.display import counted
     from concio.verdict.limit_words import limit_lines, solving_line, stage_lines
 
     if out is not None:
         check_directory(out)
     assembly = concio.assemble(loaded(file, units, engine))
-    groups = _multiplied(file, group, assembly.groups)
+    groups = _multiplied(file, group, as_assembly(assembly).groups)
     if not json:
         size = counted(len(assembly.model.free_bodies), "block"), counted(len(assembly.pairs), "contact pair")
         on_the_way([f"  {'model':<20} {' and '.join(size)}; the associated bound is sought first"])

@@ -79,7 +79,8 @@ def prove(
         else:
             found = limit(assembly, live=live, path=False, steps=False, search=False)
             sizes = f"{len(assembly.model.free_bodies):,} blocks, {len(assembly.pairs):,} contact pairs"
-            on_the_way([f"  associated bound  {found.associated.multiplier:.6g}; its fractions are sought: {sizes}"])
+            if not json:
+                on_the_way([f"  associated bound  {found.associated.multiplier:.6g}; fractions are sought: {sizes}"])
             made = found.proof(numbers)
     made = with_attention(made, assembly)
     sentence = recompute(made)

@@ -121,8 +121,6 @@ def test_steps_of_a_motion_are_solved_by_the_engine_of_the_model(asked: str, mon
 @pytest.mark.long
 def test_cone_programmes_of_space_are_solved_by_the_engine_of_the_model(monkeypatch: pytest.MonkeyPatch) -> None:
     for engine in ("pardiso", "superlu"):
-        wall = replace(WALLS["space"], engine=engine)
-        assert engines_of(lambda m=wall: concio.friction_margin(m, factor=0.2), monkeypatch) == {engine}
         facade = replace(concio.extrude(overturning(2), 0.5), engine=engine)
         asked = {"site": site(), "direction": "-x", "levels": ["SLV"]}
         assert engines_of(lambda m=facade, a=asked: concio.assess(m, **a), monkeypatch) == {engine}
