@@ -10,7 +10,8 @@ says which. Survivors are defects of the tests, or mutants that change nothing: 
 in ``mutants_kept.toml`` with the reason. Any other survivor makes the exit code 1. With ``--named`` those of
 ``mutants_named.toml`` are tried instead of a sample. After ``--minutes`` no other mutant is begun.
 
-A room has more tests than those that the table names. With ``--traced FILE``, a data file of coverage.py that knows the
+A room has more tests than those that the table names: what survives these is tried by the other files of tests that
+import its module, and by the long tests of both. With ``--traced FILE``, a data file of coverage.py that knows the
 test of each line (``pytest -m "not long" --cov=concio --cov-context=test``, of pytest-cov), what survives its room is
 tried by all tests that ran its line, those that run the fewest lines first.
 """
@@ -44,8 +45,8 @@ KEPT = HERE / "mutants_kept.toml"
 SECONDS = 90
 """A mutant whose tests take more time of a processor is dead: it made something endless."""
 TRACED_SECONDS = 300
-"""Time of a processor for the long tests of a room, and for the tests that ran the line of a mutant; where it is over,
-the mutant has survived."""
+"""Time of a processor for the tests that import a module, for long ones, and for the tests that ran the line of a
+mutant; where it is over, the mutant has survived."""
 MOST_TRACED = 1000
 """Tests that ran the line of a mutant, beyond which no other is tried."""
 
@@ -178,6 +179,26 @@ def tests_for(path: str) -> list[str]:
     return list(ROOMS[max(places, key=len)])
 
 
+@cache
+def imports_of_tests() -> dict[str, frozenset[str]]:
+    """Return the modules of the package that each file of tests imports."""
+    found = {}
+    for file in sorted(HERE.rglob("test_*.py")):
+        text = file.read_text(encoding="utf-8")
+        nodes = [n for n in ast.walk(ast.parse(text)) if isinstance(n, ast.ImportFrom) and n.module]
+        names = {m for n in nodes for m in (n.module, *(f"{n.module}.{a.name}" for a in n.names))}
+        found[file.relative_to(HERE.parent).as_posix()] = frozenset(m for m in names if m.startswith("concio."))
+    return found
+
+
+def importers_of(path: str) -> list[str]:
+    """Return the files of tests that import a module: that of its name first, then those that import the least."""
+    module = "concio." + path.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
+    known = [(file, names) for file, names in imports_of_tests().items() if module in names]
+    own = f"/test_{module.rsplit('.', 1)[-1]}.py"
+    return [file for file, names in sorted(known, key=lambda k: (not k[0].endswith(own), len(k[1]), k[0]))]
+
+
 def copied(root: Path) -> Path:
     """Return a copy of the package in ``src`` of a folder that has everything else of the repository beside it."""
     package = Path(shutil.copytree(SOURCE, root / "src" / "concio"))
@@ -220,14 +241,14 @@ def killed_by(mutant: Mutant, package: Path, traces: Traces | None = None) -> st
     whole = target.read_text(encoding="utf-8")
     target.write_text(mutant.put_in(whole), encoding="utf-8")
     try:
-        tests = mutant.tests or tests_for(mutant.path)
-        test = first_failure(tests, package)
-        if not test:  # the long tests of its room: only what fails has seen it
-            test = first_failure(tests, package, TRACED_SECONDS, "long")
-            test = test if test.startswith(("FAILED ", "ERROR ")) else ""
-        if not test and traces is not None:
-            test = first_failure(traces.tests_of(mutant)[:MOST_TRACED], package, TRACED_SECONDS)
-            test = test if test.startswith(("FAILED ", "ERROR ")) else ""
+        room = mutant.tests or tests_for(mutant.path)
+        test = first_failure(room, package)
+        others = [] if mutant.tests else [file for file in importers_of(mutant.path) if file not in room]
+        traced = traces.tests_of(mutant)[:MOST_TRACED] if traces is not None and not test else []
+        for tests, select in ((others, "not long"), ([*room, *others], "long"), (traced, "not long")):
+            if tests and not test:  # only what fails has seen it
+                test = first_failure(tests, package, TRACED_SECONDS, select)
+                test = test if test.startswith(("FAILED ", "ERROR ")) else ""
     finally:
         target.write_text(whole, encoding="utf-8")
     if test.startswith(("FAILED ", "ERROR ")) and fails_anyway(test.split(" ", 1)[1], package):

@@ -327,7 +327,10 @@ def test_the_gap_told_is_that_of_the_two_bounds(share: float) -> None:
     assert (met[-1].multiplier > 50) is (share < 1)
 
 
-@pytest.mark.parametrize(("mu", "cohesion", "cap"), [(0.6, 0.0, np.inf), (0.6, 0.3, np.inf), (0.4, 0.3, 4.0)])
+@pytest.mark.parametrize(
+    ("mu", "cohesion", "cap"),
+    [(0.6, 0.0, np.inf), (0.6, 0.3, np.inf), (0.4, 0.3, 4.0), (0.0, 0.7, np.inf), (0.0, 0.7, 4.0)],
+)
 def test_a_share_of_their_room_never_takes_forces_out_of_the_cones(mu: float, cohesion: float, cap: float) -> None:
     """1/sqrt(2) of it in any direction; of a plain cone no more."""
     rng, m = np.random.default_rng(5), 20
@@ -346,6 +349,43 @@ def test_a_share_of_their_room_never_takes_forces_out_of_the_cones(mu: float, co
     assert (outside(0.7) <= 0).all()
     if cohesion == 0:
         assert (outside(0.75) > 0).all()
+
+
+LAWS = {
+    "coulomb": (0.6, 0.0, np.inf),
+    "coulomb, capped": (0.5, 0.0, 4.0),
+    "cohesive": (0.6, 0.3, np.inf),
+    "cohesive, capped": (0.4, 0.3, 4.0),
+    "tresca": (0.0, 0.7, np.inf),
+    "tresca, capped": (0.0, 0.7, 4.0),
+    "smooth": (0.0, 0.0, np.inf),
+    "smooth, capped": (0.0, 0.0, 4.0),
+}
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("dim", [2, 3])
+def test_the_room_of_forces_is_the_inverse_hessian_of_logarithms(law: str, dim: int) -> None:
+    """Of minus log of what is left to each bound, half of it for the square of a cone, by finite differences."""
+    mu, cohesion, cap = LAWS[law]
+    cone = Cone(*(np.array([v]) for v in (mu, cohesion, 0.0, cap)))
+    it = ConeProgramme(Pairs(sp.csr_array(np.eye(dim)), cone, np.array([0, dim])))
+    t = np.array([1.3, 0.35, -0.2])[:dim]
+
+    def barrier(x: Array) -> float:
+        value = -0.5 * np.log((cohesion + mu * x[0]) ** 2 - (x[1:] ** 2).sum()) if mu or cohesion else 0.0
+        value -= np.log(x[0]) if cohesion or not mu else 0.0  # the cone keeps it positive by itself
+        return float(value - (np.log(cap - x[0]) if np.isfinite(cap) else 0.0))
+
+    free = dim if mu or cohesion else 1  # without friction nothing holds sideways
+    step = 1e-3 * np.eye(dim)[:free]
+    hessian = [
+        [(barrier(t + a + b) - barrier(t + a - b) - barrier(t - a + b) + barrier(t - a - b)) / 4e-6 for a in step]
+        for b in step
+    ]
+    room = np.zeros((dim, dim))
+    room[:free, :free] = np.linalg.inv(hessian)
+    assert _room(it, t[None])[0] == pytest.approx(room, rel=1e-3, abs=1e-4 * float(np.abs(room).max()))
 
 
 def test_motions_are_those_of_one_body_after_another() -> None:

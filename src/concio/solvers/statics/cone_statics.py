@@ -262,8 +262,10 @@ def _room(it: ConeProgramme, t: Array) -> Array:
         share = np.where(own > 0, 1.0 / (1.0 / own + room[:, 0, 0]), 0.0)
     column = room[:, :, 0].copy()
     room -= share[:, None, None] * column[:, :, None] * column[:, None, :]
-    room[~both, 0, 0] = np.where(own > 0, 1.0 / np.where(own > 0, own, 1.0), 0.0)[~both]
+    room[~both, 0, 0] = np.divide(1.0, own, out=np.zeros_like(own), where=own > 0)[~both]
     tresca = it.rough & ~both
-    for k in range(1, it.pairs.dim):
-        room[tresca, k, k] = sized[tresca]
+    side = beta[tresca, 1:]
+    far = (beta[tresca] ** 2).sum(1)
+    within = np.eye(it.pairs.dim - 1) - 2.0 * side[:, :, None] * side[:, None, :] / far[:, None, None]
+    room[tresca, 1:, 1:] = sized[tresca, None, None] * within
     return room
