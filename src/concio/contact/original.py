@@ -19,7 +19,7 @@ from concio.contact.reference import Configuration, Reference
 from concio.contact.rows import Rows
 from concio.contact.slots import KINDS, LONE, Slots
 from concio.fem.discretisation import FIXED, RIGID
-from concio.kinematics.frames import turned, turned_left
+from concio.kinematics.frames import dot, turned, turned_left
 from concio.kinematics.placement import Placement
 from concio.model.interfaces.detect import SLIVER_SHARE
 
@@ -246,15 +246,15 @@ class OriginalContacts:
         t_a, t_b = tangent[a], tangent[b]
         mean = t_a - t_b
         mean = mean / np.hypot(*mean.T)[:, None]
-        whole = self.length[a] * (mean * t_a).sum(axis=1)
+        whole = self.length[a] * dot(mean, t_a)
         corners_a, corners_b = np.stack([p0[a], p1[a]]), np.stack([p1[b], p0[b]])
-        inside = ((corners_b - p0[a]) * mean).sum(axis=2)
+        inside = dot(corners_b - p0[a], mean)
         inside[1] = whole - inside[1]
         near = np.abs(inside) <= COINCIDE * self.length[a]
         of_b = np.where(near, layout.toucher.inner[:, n.claimed], inside > 0.0)
         out_a, out_b = -turned_left(t_a), -turned_left(t_b)  # out of either body
-        gap_b = ((corners_b - p0[a]) * out_a).sum(axis=2)
-        gap_a = ((corners_a - p0[b]) * out_b).sum(axis=2)
+        gap_b = dot(corners_b - p0[a], out_a)
+        gap_a = dot(corners_a - p0[b], out_b)
         pick = of_b[:, :, None]
         point = np.where(pick, corners_b, corners_a).reshape(-1, 2)
         normal = np.where(pick, out_a, -out_b).reshape(-1, 2)
@@ -263,12 +263,12 @@ class OriginalContacts:
         valid = np.tile(length > n.shortest, 2)
         lone, out = p0[n.corner], -turned_left(tangent[n.edge])
         away = lone - p0[n.edge]
-        along = (away * tangent[n.edge]).sum(axis=1)
+        along = dot(away, tangent[n.edge])
         slack = 1e-9 * self.reference.disc.size
         over = (along >= -slack) & (along <= self.length[n.edge] + slack)
         return (
             np.concatenate([point, lone]), np.concatenate([normal, out]),
-            np.concatenate([gap, (away * out).sum(axis=1)]), np.concatenate([of_b.ravel(), np.ones(len(lone), bool)]),
+            np.concatenate([gap, dot(away, out)]), np.concatenate([of_b.ravel(), np.ones(len(lone), bool)]),
             length, np.concatenate([valid, over]),
         )  # fmt: skip
 
@@ -292,7 +292,7 @@ class OriginalContacts:
                 values[:, k, first : first + 2] = moves[:, None] * way
                 values[:, k, first + 2] = moves * moment
                 if v is not None:
-                    imposed[:, k] += sign * still_moved * (v * way).sum(axis=1)
+                    imposed[:, k] += sign * still_moved * dot(v, way)
                 if side is not None:
                     local = turned(way, -rotation[body])
                     entries = sign * side.weight[:, :, None] * local[:, None, :]

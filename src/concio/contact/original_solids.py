@@ -25,6 +25,7 @@ from concio.contact.slots import Slots
 from concio.contact.solid_search import SolidLayout
 from concio.errors import InputError
 from concio.fem.discretisation import FIXED, RIGID
+from concio.kinematics.frames import cross, norm
 from concio.kinematics.placement import Placement
 
 Array = np.ndarray
@@ -229,10 +230,10 @@ class OriginalSolids:
         """Return points, frames and gaps of corners over faces, and how far they lie beyond these and beside."""
         sides, at = place[n.rings], place[n.corner]
         from_first = sides - sides[:, :1, :1]
-        area = np.cross(from_first[:, :, 0], from_first[:, :, 1]).sum(axis=1)
-        normal = area / np.linalg.norm(area, axis=1)[:, None]
+        area = cross(from_first[:, :, 0], from_first[:, :, 1]).sum(axis=1)
+        normal = area / norm(area)[:, None]
         along = np.matmul(rotation[n.of_face], n.level[:, :, None])[:, :, 0]
-        frame = np.stack([normal, along, np.cross(normal, along)], axis=1)
+        frame = np.stack([normal, along, cross(normal, along)], axis=1)
         flat = np.matmul(from_first, frame[:, None, 1:].transpose(0, 1, 3, 2))
         frame = frame[n.face]
         off = np.matmul(frame, (at - sides[n.face, 0, 0])[:, :, None])[:, :, 0]
@@ -252,7 +253,7 @@ class OriginalSolids:
         free[own] = ~stands[n.joint[own]]
         chosen = old & (beyond <= SLACK * size) & free
         i, j = layout.toucher.near.T
-        same = np.linalg.norm(np.cross(point[i] - point[j], normal[i]), axis=1) <= SAME * size
+        same = norm(cross(point[i] - point[j], normal[i])) <= SAME * size
         stood_for = np.zeros(n.lone, dtype=bool)
         for one, other in ((i, j), (j, i)):
             stood_for[other[same & chosen[one]]] = True
@@ -272,9 +273,9 @@ class OriginalSolids:
             free = sign * (disc.shape_of[b] == RIGID)[:, None, None]
             arm = point - centre[b]
             values[:, :, 6 * k : 6 * k + 3] = free * frame
-            values[:, :, 6 * k + 3 : 6 * k + 6] = free * np.matmul(np.cross(arm[:, None], frame), every[b])
+            values[:, :, 6 * k + 3 : 6 * k + 6] = free * np.matmul(cross(arm[:, None], frame), every[b])
             still = np.flatnonzero(disc.shape_of[b] == FIXED)
-            moving = velocity[b[still]] + np.cross(spin[b[still]], arm[still])
+            moving = velocity[b[still]] + cross(spin[b[still]], arm[still])
             imposed[still] += sign * (frame[still] * moving[:, None]).sum(axis=2)
         return values, imposed
 
@@ -286,19 +287,19 @@ class OriginalSolids:
         if not spin.any():
             return np.zeros((len(point), 3))
         a, b, f, e = n.body[:, 0], n.body[:, 1], n.faces, slice(n.faces, n.lone)
-        swung = [np.cross(spin[c], point - centre[c]) for c in (a, b)]
+        swung = [cross(spin[c], point - centre[c]) for c in (a, b)]
         slip = velocity[b] + swung[1] - velocity[a] - swung[0]
-        seen = np.cross(spin[b], swung[1]) - np.cross(spin[a], swung[0])
-        seen[:f] -= 2.0 * np.cross(spin[a[:f]], slip[:f])
+        seen = cross(spin[b], swung[1]) - cross(spin[a], swung[0])
+        seen[:f] -= 2.0 * cross(spin[a[:f]], slip[:f])
         ends = place[n.edges]
         d_a, d_b = (ends[:, k, 1] - ends[:, k, 0] for k in (0, 1))
-        grown = np.cross(np.cross(spin[a[e]], d_a), d_b) + np.cross(d_a, np.cross(spin[b[e]], d_b))
-        rate, normal = (sign / np.linalg.norm(np.cross(d_a, d_b), axis=1))[:, None] * grown, frame[e, 0]
+        grown = cross(cross(spin[a[e]], d_a), d_b) + cross(d_a, cross(spin[b[e]], d_b))
+        rate, normal = (sign / norm(cross(d_a, d_b)))[:, None] * grown, frame[e, 0]
         rate = rate - (rate * normal).sum(axis=1, keepdims=True) * normal
         seen[e] += 2.0 * (rate * slip[e]).sum(axis=1, keepdims=True) * normal
         if n.joints is not None:
             main = n.body[n.lone :][np.arange(len(point) - n.lone), n.joints.joints.master[n.joints.joints.of]]
-            seen[n.lone :] -= 2.0 * np.cross(spin[main], slip[n.lone :])
+            seen[n.lone :] -= 2.0 * cross(spin[main], slip[n.lone :])
         return np.asarray(np.matmul(frame, seen[:, :, None])[:, :, 0])
 
     # -- what nobody found ---------------------------------------------------------------------------------------------
@@ -337,7 +338,7 @@ class OriginalSolids:
     def _strained(self, strain: Array) -> Array:
         """Return the largest displacement of a node of each body (B,) in its frame [m]."""
         found = np.zeros(len(self.bodies))
-        np.maximum.at(found, self.reference.body_of_node, np.linalg.norm(strain, axis=1))
+        np.maximum.at(found, self.reference.body_of_node, norm(strain))
         return found
 
     @cached_property
@@ -365,7 +366,7 @@ def _beyond(sides: Array) -> Array:
     along = q - p
     size = (along**2).sum(axis=2)
     share = np.clip(-(p * along).sum(axis=2) / np.where(size > 0, size, 1.0), 0.0, 1.0)
-    distance = np.linalg.norm(p + share[:, :, None] * along, axis=2)
+    distance = norm(p + share[:, :, None] * along)
     distance = np.where(size > 0, distance, np.inf).min(axis=1, initial=np.inf)
     turn = np.arctan2(p[..., 0] * q[..., 1] - p[..., 1] * q[..., 0], (p * q).sum(axis=2))
     inside = np.abs(turn.sum(axis=1)) > np.pi
@@ -379,15 +380,15 @@ def _crossings(ends: Array, sign: Array) -> tuple[Array, Array, Array, Array]:
     """
     start, d = ends[:, :, 0], ends[:, :, 1] - ends[:, :, 0]
     d_a, d_b = d[:, 0], d[:, 1]
-    both = np.cross(d_a, d_b)
-    size, longs = np.linalg.norm(both, axis=1), np.linalg.norm(d, axis=2)
+    both = cross(d_a, d_b)
+    size, longs = norm(both), norm(d)
     skew = size > SKEW * longs.prod(axis=1)
     normal = np.where(skew, sign / np.where(skew, size, 1.0), 0.0)[:, None] * both
     way = np.where(skew[:, None, None], np.stack([d_a, -d_b, normal], axis=2), np.eye(3))
     s, u, gap = np.linalg.solve(way, (start[:, 1] - start[:, 0])[:, :, None])[:, :, 0].T
     beyond = np.maximum(np.maximum(-s, s - 1.0) * longs[:, 0], np.maximum(-u, u - 1.0) * longs[:, 1])
     along = d_a / longs[:, :1]
-    frame = np.stack([normal, along, np.cross(normal, along)], axis=1)
+    frame = np.stack([normal, along, cross(normal, along)], axis=1)
     point = start[:, 0] + s[:, None] * d_a + (0.5 * gap)[:, None] * normal
     return point, frame, gap, np.where(skew, beyond, np.inf)
 

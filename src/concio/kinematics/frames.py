@@ -67,7 +67,10 @@ def cross(p: Array, q: Array) -> Array:
         return area
     a, b, c = p[..., 0], p[..., 1], p[..., 2]
     x, y, z = q[..., 0], q[..., 1], q[..., 2]
-    return np.stack([b * z - c * y, c * x - a * z, a * y - b * x], axis=-1)
+    first = b * z - c * y
+    found = np.empty((*np.shape(first), 3))
+    found[..., 0], found[..., 1], found[..., 2] = first, c * x - a * z, a * y - b * x
+    return found
 
 
 def turning(p: Array, q: Array) -> Array:

@@ -155,4 +155,6 @@ class StepFactor:
 
 def filled(D: Array) -> Array:
     """Return the numbers of blocks (m, d, d) with an entry that is not zero."""
-    return np.unique(np.flatnonzero(D.ravel()) // (D.shape[1] * D.shape[2]))
+    found = np.zeros(len(D), dtype=bool)
+    found[np.flatnonzero(D.ravel()) // (D.shape[1] * D.shape[2])] = True
+    return np.flatnonzero(found)
