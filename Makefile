@@ -54,12 +54,18 @@ test: $(VENV)/.installed-dev
 test-all:
 	$(MAKE) test SELECT="long or not long"
 
+# As test-all, with every random case: the whole ensembles, of which test-all draws a part (tests/samples.py). About an hour.
+.PHONY: test-ensembles
+test-ensembles:
+	CONCIO_CASES=all $(MAKE) test-all
+
 # The window in a real browser: Chromium is installed from Debian's package where it is missing and apt is there.
 .PHONY: journeys
 journeys: $(VENV)/.installed-dev
 	@tests/journeys/run.sh $(BIN)/python
 
-# The properties with cases drawn afresh; the other runs draw the same ones every time, so that they judge the code alone.
+# The properties with cases drawn afresh, as many as in test-ensembles; the other runs draw the same ones every time, so
+# that they judge the code alone.
 .PHONY: fresh
 fresh: $(VENV)/.installed-dev
 	CONCIO_CASES=fresh OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist worksteal tests

@@ -22,14 +22,18 @@ def pytest_configure(config: pytest.Config) -> None:
     """Draw fewer cases where the long tests are left out, and the same ones in every run unless fresh ones are wanted.
 
     A run then judges the code, not the draw, and what passed here passes elsewhere; ``make fresh`` looks for new cases.
+    ``make test-ensembles`` draws all that were ever drawn of each property, the same ones every time.
     """
-    samples.whole = "not long" not in config.getoption("markexpr").replace("long or not long", "")
+    cases = os.environ.get("CONCIO_CASES", "same")
+    quick = "not long" in config.getoption("markexpr").replace("long or not long", "")
+    samples.level = samples.QUICK if quick else samples.WHOLE if cases == "same" else samples.EVERY
     # The runner of typer makes all commands anew at every call, which took six parts in a hundred of all tests.
     typer.testing._get_command = functools.cache(typer.testing._get_command)
     # No deadline: a busy machine is not a fault of what is tested.
     settings.register_profile("same", deadline=None, derandomize=True)
+    settings.register_profile("all", deadline=None, derandomize=True)
     settings.register_profile("fresh", deadline=None, print_blob=True)
-    settings.load_profile(os.environ.get("CONCIO_CASES", "same"))
+    settings.load_profile(cases)
     # Hypothesis also draws constants that it reads in the modules loaded so far: with them, the draws of a test would
     # depend on the tests that the same worker ran before it. (Releases that draw none have no such module or function.)
     if importlib.util.find_spec("hypothesis.internal.conjecture.providers") is not None:

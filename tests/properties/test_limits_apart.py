@@ -6,6 +6,7 @@ Each structure stands beside another one of any size and weight; both live loads
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -18,7 +19,12 @@ import concio
 from concio.verdict.verdict import Outcome
 from samples import sample
 
-few = settings(max_examples=sample(2, 8), deadline=None)
+few = settings(max_examples=sample(1, 4, 8), deadline=None)
+
+
+@cache
+def alone_of(dim, kind, law):
+    return concio.limit(pushed(dim, stack(dim, kind), kind, law))
 
 
 @pytest.mark.long
@@ -29,7 +35,7 @@ few = settings(max_examples=sample(2, 8), deadline=None)
 )  # fmt: skip
 def test_what_carries_as_much_elsewhere_changes_nothing(dim, kind, law, size, weight, first):
     here, there = stack(dim, kind), another(dim, 10.0**size, 7.0, "rigid")
-    alone = concio.limit(pushed(dim, here, kind, law))
+    alone = alone_of(dim, kind, law)
     bodies = [*there, *here] if first else [*here, *there]
     both = concio.limit(pushed(dim, bodies, kind, law, 10.0**weight))
     assert both.associated.multiplier == pytest.approx(alone.associated.multiplier, rel=1e-9)
@@ -44,8 +50,8 @@ def test_what_carries_as_much_elsewhere_changes_nothing(dim, kind, law, size, we
         assert both.steps.carried == pytest.approx(alone.steps.carried, rel=1e-9)
 
 
-@pytest.mark.parametrize("weight", sample([1e-6], [1e-9, 1e-6, 1.0, 1e6]))
-@pytest.mark.parametrize("size", sample([1e-3], [1e-3, 1.0, 100.0]))
+@pytest.mark.parametrize("weight", sample([1e-6], [1e-9, 1e6], [1e-9, 1e-6, 1.0, 1e6]))
+@pytest.mark.parametrize("size", sample([1e-3], [1e-3, 100.0], [1e-3, 1.0, 100.0]))
 def test_the_least_part_decides_however_light_it_is(size, weight):
     """A column that tips at a tenth of its weight, beside a stack that slides at 0.6."""
     found = concio.limit(pushed(2, [*stack(2, "rigid"), *column(size, 13.0)], "rigid", "hard", weight=weight))

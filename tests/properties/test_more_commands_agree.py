@@ -20,7 +20,7 @@ from concio.proof.exact_certificate import prove_collapse
 from concio.proof.verify import check
 from concio.verdict.verdict import Outcome
 from pillars import ARCH, pillar, sideways, turned
-from samples import sample
+from samples import first, sample
 
 SELF_STRESS = ("slot of rigid blocks", "slot of elastic blocks", "narrow panel", "hangs beside a heavy block",
                "hangs beside a heavy block that is pushed")  # fmt: skip
@@ -83,7 +83,7 @@ def test_a_study_of_one_row_says_what_run_and_limit_say(name: str, tmp_path: Pat
 MOVES = [n for n in MODELS if n != "narrow panel"]
 
 
-@pytest.mark.parametrize("name", spread(MOVES, 0, 3))
+@pytest.mark.parametrize("name", spread(MOVES, 0, 5))
 def test_a_motion_that_hardly_begins_says_whether_the_structure_stands(name: str, tmp_path: Path) -> None:
     """A ten-thousandth of gravity moves nothing that stands: what falls does not stand before the ground moves."""
     options = ("--duration", "0.05 s") if MODELS[name][1] == FAILS or name in TURNED else ()
@@ -97,7 +97,7 @@ def test_a_motion_that_hardly_begins_says_whether_the_structure_stands(name: str
         assert "is not the motion that was asked for" in found["sentence"]
 
 
-@pytest.mark.parametrize("name", spread(list(MODELS), 2, 3))
+@pytest.mark.parametrize("name", spread(list(MODELS), 2, 4))
 def test_a_proof_in_fractions_says_what_run_and_limit_say(name: str, tmp_path: Path) -> None:
     path, live = written(name, tmp_path), LIVE.get(name, "live")
     if name in NOT_PROVED:
@@ -152,7 +152,7 @@ def test_at_the_multiplier_of_an_assessment_a_load_step_ceases_to_hold(name: str
     assert sorted(per_way.values()) == pytest.approx(sorted(least), rel=1e-6)
 
 
-@pytest.mark.parametrize("angle", [-5.0, 2.0])
+@pytest.mark.parametrize("angle", first(1, [-5.0, 2.0]))
 @pytest.mark.parametrize("load", [0.1, 0.3])
 def test_a_settlement_ends_as_the_load_step_of_all_loads(angle: float, load: float, tmp_path: Path) -> None:
     model = concio.loads(pillar(sideways(load), more=turned(angle)))
@@ -186,10 +186,10 @@ def drawn(seed: int, dim: int) -> concio.Model:
     return made(share * whole)
 
 
-IN_SPACE = [pytest.param(k, 3, marks=pytest.mark.long) for k in (0, 1, 3, 4, 5, 6, 7)]
+IN_SPACE = [pytest.param(k, 3, marks=pytest.mark.long) for k in sample([5], [3, 4, 5], [0, 1, 3, 4, 5, 6, 7])]
 
 
-@pytest.mark.parametrize(("seed", "dim"), [*((k, 2) for k in range(sample(2, 20))), *IN_SPACE])
+@pytest.mark.parametrize(("seed", "dim"), [*((k, 2) for k in range(sample(2, 8, 20))), *IN_SPACE])
 def test_every_analysis_of_a_random_wall_says_the_same(seed: int, dim: int) -> None:
     model = drawn(seed, dim)
     assembly = concio.assemble(model)

@@ -95,7 +95,7 @@ def trilith(rng):
     return Model(tuple(bodies), {"stone": stone}, {"joint": law}, loads=loads)
 
 
-@pytest.mark.parametrize("seed", range(sample(3, 12)))
+@pytest.mark.parametrize("seed", range(sample(1, 6, 12)))
 def test_joints_that_dilate_are_followed_alike_by_events_and_by_steps(seed):
     """A joint that opens at one end slips there, too, and its slip lifts as the law of one step says."""
     model = trilith(np.random.default_rng([71, seed]))

@@ -27,7 +27,7 @@ from models import box, on_ground, weight
 from samples import sample
 from solids import box as solid
 
-SEEDS = range(sample(3, 12))
+SEEDS = range(sample(2, 6, 12))
 DEAD = Stage("weight", {"dead": 1.0})
 STONE = {"kind": "rigid", "material": "stone"}
 

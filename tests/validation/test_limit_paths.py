@@ -18,6 +18,7 @@ from concio.solvers.statics.associated_limit import associated_limit
 from concio.solvers.statics.collapse_search import find_collapse_state
 from path_helpers import energy_error, least_dissipation, weight_then, worst_certificate
 from rigid_walls import FERRIS_TIN_LOI, MU, TALLER, wall
+from samples import first
 
 QUICK = ["wall 1", pytest.param("wall 2", marks=pytest.mark.long), "wall 3"]
 """Wall 2 is wall 1 with four more courses."""
@@ -59,7 +60,7 @@ def test_coulomb_path_stays_below_and_is_repeatable(name):
     assert not still.all()
 
 
-@pytest.mark.parametrize("name", QUICK)
+@pytest.mark.parametrize("name", first(1, QUICK))
 def test_certified_collapse_states_lie_below_the_associated_multiplier(name):
     """Found without stiffness or path; in wall 3 the path ends in the very state the search finds."""
     a = wall(FERRIS_TIN_LOI[name])

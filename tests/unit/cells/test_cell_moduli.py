@@ -12,6 +12,7 @@ from cells import moved, other_origin, periodic_elements, stress_matrix
 from concio.analysis.cells.periodic_cell import PeriodicCell
 from concio.contact.macroscopic_strain import STRAINS
 from concio.errors import InputError
+from samples import first
 
 
 def running(a, b, kn, ks, kn_head, ks_head, **options):
@@ -49,7 +50,7 @@ def test_blocks_turn_as_the_closed_form_says():
     assert turns == pytest.approx(np.full(2, 0.5 * (P - Q) / (P + Q)))  # engineering shear 1: E_xy = 1/2
 
 
-@pytest.mark.parametrize("repeat", [(2, 1), (1, 2), (3, 2)])
+@pytest.mark.parametrize("repeat", first(1, [(3, 2), (2, 1), (1, 2)], single=True))
 @pytest.mark.parametrize("bond", ["running", "flemish"])
 def test_larger_cells_have_the_same_moduli(bond, repeat):
     block = concio.Elastic(E=4e6, nu=0.25)

@@ -14,7 +14,7 @@ from concio.analysis.cells.half_spaces import HalfSpaces
 from concio.analysis.cells.periodic_cell import PeriodicCell
 from concio.errors import InputError, NoEquilibriumError
 from concio.solvers.statics.associated_limit import associated_limit
-from samples import sample
+from samples import first, sample
 
 
 def running(a, b, f, c, **options):
@@ -107,7 +107,7 @@ def test_every_half_space_is_proven_by_its_mechanism_and_every_point_is_carried(
         assert domain.faces.margin(point) >= -1e-7 * domain.faces.size
 
 
-@pytest.mark.parametrize("repeat", [(2, 1), (3, 2)])
+@pytest.mark.parametrize("repeat", first(1, [(2, 1), (3, 2)], single=True))
 def test_larger_cells_are_as_strong(repeat):
     rng = np.random.default_rng(3)
     for options in ({"bond": "flemish"}, {"lap": 0.3}):

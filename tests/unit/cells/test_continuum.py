@@ -132,7 +132,7 @@ def test_prandtls_strip_footing_is_enclosed():
     assert exact < high.multiplier < 1.1 * exact
 
 
-@pytest.mark.parametrize("case", range(sample(2, 4)))
+@pytest.mark.parametrize("case", range(sample(1, 4)))
 def test_stresses_never_carry_more_than_a_mechanism_allows(case):
     rng = np.random.default_rng(case)
     law = concio.JointLaw(rng.uniform(0.4, 0.9), cohesion=rng.uniform(0, 20), tensile_strength=rng.uniform(0, 10))

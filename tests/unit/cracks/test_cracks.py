@@ -18,6 +18,7 @@ from concio.analysis.cracks.observed import readings
 from concio.verdict.diagnosis_verdict import diagnosis_verdict
 from concio.verdict.diagnosis_words import EN, IT
 from models import box, model_of, weight
+from samples import first
 
 SPAN, RING, SKEW = 1.2, 0.3, 70.0
 TOP = (-SPAN / 2 - RING / np.tan(np.deg2rad(SKEW)), RING)
@@ -203,7 +204,7 @@ def test_a_path_that_the_quick_solver_loses_is_followed_by_the_sure_one(monkeypa
 
 @pytest.mark.parametrize(
     ("number", "wrong", "mistake"),
-    [(1, lambda v: 10 * v, "unit"), (3, lambda v: -v, "sign"), (1, lambda v: 1.7 * v, "unknown")],
+    first(1, [(1, lambda v: 10 * v, "unit"), (3, lambda v: -v, "sign"), (1, lambda v: 1.7 * v, "unknown")]),
 )
 def test_a_wrong_measurement_is_named_with_its_mistake(number, wrong, mistake) -> None:
     cracks = spread_cracks(0.01)

@@ -292,7 +292,7 @@ def test_tables_have_equal_columns_and_sum_up(mixed: Result) -> None:
 
 
 def _read(path: Path):
-    pytest.importorskip("vtk", reason="the vtk package is not installed")
+    pytest.importorskip("vtkmodules", reason="the vtk package is not installed")
     from vtkmodules.util.numpy_support import vtk_to_numpy
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 

@@ -16,6 +16,7 @@ from concio import GeometryError, InputError, Model
 from concio.contact.assembly import Assembly
 from concio.model.generate import plan, plan_walls
 from concio.model.generate.bonds import SHORTEST
+from samples import first
 
 RIGID = {"block": "rigid", "unit_weight": 1.0}
 U = {"lines": [((0.5, 0), (0.5, 8)), ((0, 0.5), (5, 0.5)), ((0, 7.5), (5, 7.5))], "height": 10, "block_size": (2, 1, 1)}
@@ -101,7 +102,7 @@ def plan_area(options: dict[str, object]) -> float:
     return float(shapely.union_all(boxes).area)
 
 
-@pytest.mark.parametrize("name", list(WALLS))
+@pytest.mark.parametrize("name", first(7, sorted(WALLS, key=lambda name: name == "three wythes")))
 def test_bonds_fill_the_walls_and_lap(name: str) -> None:
     options, least, _ = WALLS[name]
     model = concio.walls(height=0.8, **options, **RIGID)  # type: ignore[arg-type]
@@ -180,7 +181,7 @@ def test_barrels(bond: str, skew: float | str) -> None:
 
 
 @pytest.mark.parametrize("bond", ["running", "stack"])
-@pytest.mark.parametrize("oculus", [0.0, 1.2])
+@pytest.mark.parametrize("oculus", first(1, [1.2, 0.0]))
 @pytest.mark.parametrize("rise", [None, 2.0])
 def test_domes(bond: str, oculus: float, rise: float | None) -> None:
     n, m = 5, 10
@@ -213,7 +214,7 @@ def test_a_dome_with_a_lantern_on_spreading_springers() -> None:
 
 
 @pytest.mark.parametrize("groin", ["stone", "mitre"])
-@pytest.mark.parametrize(("sides", "oculus", "rise"), [(4, 0.0, None), (8, 1.0, None), (6, 0.0, 1.2)])
+@pytest.mark.parametrize(("sides", "oculus", "rise"), first(2, [(4, 0.0, None), (6, 0.0, 1.2), (8, 1.0, None)]))
 def test_cloister_vaults(groin: str, sides: int, oculus: float, rise: float | None) -> None:
     options = {"span": 5.0, "ring": 0.3, "courses": 6, "block_length": 0.7, "sides": sides, "oculus": oculus}
     model = concio.cloister_vault(**options, rise=rise, groin=groin, **RIGID)  # type: ignore[arg-type]
@@ -245,7 +246,7 @@ def test_cross_vaults(groin: str) -> None:
     assert len(springers) == 4
 
 
-@pytest.mark.parametrize("ring", [0.07, 0.08, 0.0850, 0.0855])
+@pytest.mark.parametrize("ring", first(2, [0.07, 0.0855, 0.08, 0.0850]))
 def test_springers_of_a_cross_vault_have_room_down_to_the_least_angle(ring: float) -> None:
     model = concio.cross_vault(span=1.0, ring=ring, courses=5, block_length=0.15, springing=40, **RIGID)
     assert min(b.volume for b in model.bodies if b.kind == "fixed") > 0

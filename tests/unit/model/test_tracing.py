@@ -17,7 +17,7 @@ from concio.model.picture.photo import homography
 from concio.model.picture.shared_boundaries import shared_outlines
 from concio.trace import Photo, read_photo, trace_courses, trace_labels, trace_outlines, trace_regions, wire
 from rendered import BEDS, HEADS, bricks, found_share, read_bricks, rendered, sideways
-from samples import sample
+from samples import first, sample
 
 WALL = {"block_size": (0.25, 0.125), "length": 1.0, "height": 0.625, "block": "rigid", "unit_weight": 20.0}
 
@@ -48,7 +48,7 @@ def test_a_head_joint_that_only_noise_has_drawn_is_the_most_doubtful() -> None:
     assert first.strength < 0.7 * second.strength
 
 
-@pytest.mark.parametrize("unit", [(0.20, 0.075), (0.25, 0.08), (0.22, 0.065)])
+@pytest.mark.parametrize("unit", first(1, [(0.20, 0.075), (0.25, 0.08), (0.22, 0.065)], single=True))
 def test_the_bricks_of_a_photograph_are_found_and_no_joint_is_invented(unit: tuple[float, float]) -> None:
     """Stretchers and headers stand in no regular order: other courses say nothing of where a course has its joints."""
     found = trace_courses(bricks(), unit)

@@ -22,7 +22,7 @@ from concio.contact.reference import Reference
 from concio.contact.solid_search import SHIFT
 from concio.contact.solid_sides import FacetSides
 from motion_models import G
-from samples import sample
+from samples import first, sample
 
 E, WEIGHT = 1e5, 20.0
 BAR = 1.0
@@ -181,7 +181,9 @@ def test_an_elastic_block_at_rest_is_compressed_as_by_hand_and_stays():
     assert found.steps.reaction[-1, 0] == pytest.approx([0.0, 0.0, WEIGHT * 0.125], abs=1e-6)
 
 
-@pytest.mark.parametrize(("lower", "upper"), [("elastic", "elastic"), ("rigid", "elastic"), ("elastic", "rigid")])
+@pytest.mark.parametrize(
+    ("lower", "upper"), first(1, [("rigid", "elastic"), ("elastic", "elastic"), ("elastic", "rigid")])
+)
 def test_blocks_with_meshes_that_do_not_fit_stand_on_each_other(lower, upper):
     model = model_of(
         FLOOR, box("a", (0, 0, 0), (0.5, 0.25, 0.25), lower), box("b", (0.1, 0.05, 0.25), (0.45, 0.35, 0.5), upper)

@@ -12,7 +12,7 @@ from concio.analysis.motion.push_result import PushEnding
 from concio.solvers.stepping.solver import StepSolver
 from models import box, model_of, weight
 from motion_models import standing
-from samples import sample
+from samples import first, sample
 
 SLENDER = np.arctan(0.2)
 
@@ -251,7 +251,7 @@ def test_steps_that_nothing_solves_end_a_push_in_words(monkeypatch):
     assert first < len(asked) < first + 140
 
 
-@pytest.mark.parametrize(("cap", "most"), [(50.0, 0.1195), (200.0, 0.180)])
+@pytest.mark.parametrize(("cap", "most"), first(1, [(50.0, 0.1195), (200.0, 0.180)]))
 def test_a_crushing_toe_moves_the_hinge_inwards(cap, most):
     """At most 2 (b - a / 2) with the crushed length a = W / cap, were it resolved without error."""
     found = concio.push(standing(0.2, 1.0, friction=concio.JointLaw(1.0, compressive_strength=cap)))
@@ -268,7 +268,7 @@ def test_blocks_that_could_all_slide_part():
 
 
 @pytest.mark.parametrize("E", [3e5, 1e7][: sample(1, 2)])
-@pytest.mark.parametrize("elastic", [("pier",), ("slab",), ("pier", "slab")])
+@pytest.mark.parametrize("elastic", first(1, [("pier", "slab"), ("pier",), ("slab",)], single=True))
 def test_an_elastic_slab_that_leans_on_a_corner_stands_and_is_pushed_as_a_rigid_one(elastic: tuple[str, ...], E: float):
     """The corner meets the slab inside an element: no force acts where the corner is not.
 

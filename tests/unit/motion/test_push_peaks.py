@@ -53,7 +53,7 @@ LONG = tuple(pytest.param(kind, marks=pytest.mark.long) for kind in (neighbours,
 
 
 @pytest.mark.parametrize("kind", [pillar, tied, *LONG], ids=lambda f: f.__name__)
-@pytest.mark.parametrize("seed", range(sample(1, 6)))
+@pytest.mark.parametrize("seed", range(sample(1, 2, 6)))
 def test_the_peak_does_not_depend_on_the_step(kind, seed):
     """Within a millionth, with steps from a sixth of the usual one to its double."""
     rng = np.random.default_rng(seed)
@@ -77,7 +77,7 @@ def test_a_peak_is_as_hand_statics_says_but_for_what_joints_give_way():
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("seed", range(sample(1, 8)))
+@pytest.mark.parametrize("seed", range(sample(1, 3, 8)))
 def test_bodies_meet_where_they_do(seed):
     """The top corner of a pillar that turns about its toe has moved by the gap; nothing is carried across before.
 

@@ -104,7 +104,7 @@ def test_the_oracle_meets_the_closed_form_of_overturning():
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("seed", [16, 20, 6][: sample(1, 3)])  # those left out are among the sixty
+@pytest.mark.parametrize("seed", [16, 20][: sample(1, 2)])
 def test_a_rocking_block_moves_as_events_say(seed):
     assert 0.1 < check(seed) < 0.9
 
@@ -120,6 +120,6 @@ def test_the_peak_after_an_impact_does_not_depend_on_where_the_steps_fall():
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("seed", range(60))
-def test_sixty_rocking_blocks_move_as_events_say(seed):
+@pytest.mark.parametrize("seed", range(sample(1, 12, 60)))  # of twelve two fall, two follow records, two are chaotic
+def test_rocking_blocks_move_as_events_say(seed):
     check(seed)

@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 import concio
 from concio.analysis.motion.scheme import Drive, Scheme
 from motion_models import G, standing
-from samples import sample
+from samples import first, sample
 from space_motions import blocks, extruded, placed, stepper_of
 
 TURN = Rotation.from_rotvec([0.3, 0.5, -0.8]).as_matrix()
@@ -54,7 +54,7 @@ def same(state, other, error=1e-10):
     assert vector == pytest.approx([0.0, -state.rotation[1], 0.0], abs=error)
 
 
-@pytest.mark.parametrize("law", [{}, {"yield_force": 3.0}, {"break_elongation": 0.02}, {"prestress": 2.0}])
+@pytest.mark.parametrize("law", first(2, [{"yield_force": 3.0}, {"break_elongation": 0.02}, {}, {"prestress": 2.0}]))
 def test_a_block_pulled_by_a_tie_is_that_of_the_plane(law):
     model = replace(
         standing(0.4, 0.2, friction=0.1), ties=(concio.Tie("rod", "block", (-0.2, 0.1), "", (-1.0, 0.3), 40.0, **law),)
@@ -74,7 +74,7 @@ def test_a_rocking_block_held_by_a_tie_is_that_of_the_plane():
     assert abs(state.rotation[1]) > 1e-3
 
 
-@pytest.mark.parametrize("moves", [False, True])
+@pytest.mark.parametrize("moves", first(1, [False, True]))
 def test_a_block_on_a_shaken_base_is_that_of_the_plane(moves):
     """As forces of inertia along and square to the floor, and on a floor that moves along itself.
 
@@ -149,7 +149,7 @@ def test_a_floor_that_turns_beyond_the_edge_of_a_block_lets_it_fall(angle, stand
 
 
 @pytest.mark.parametrize("friction", [0.2, 0.5])
-@pytest.mark.parametrize("space", [False, True])
+@pytest.mark.parametrize("space", first(1, [True, False]))
 def test_a_floor_that_moves_aside_takes_along_what_friction_holds(friction, space):
     """A spring of 10 kN/m holds a block of 3.2 kN back: it goes with the floor until friction is used up."""
     model = replace(
@@ -190,7 +190,7 @@ def test_a_base_that_moves_along_three_axes_is_the_ground_seen_from_outside():
     assert apart[1] < 0.65 * apart[0]
 
 
-@pytest.mark.parametrize("base", ["inertia", "moving"])
+@pytest.mark.parametrize("base", first(1, ["moving", "inertia"]))
 def test_what_a_support_holds_follows_three_components(base):
     """A block glued to a support shakes with it: its reaction is its mass by what the ground and weight accelerate."""
     foot = tuple((x, y, 0.0) for x, y in ((-0.3, -0.3), (0.3, -0.3), (0.3, 0.3), (-0.3, 0.3)))

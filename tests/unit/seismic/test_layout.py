@@ -133,7 +133,7 @@ def test_the_sentence_counts_each_kind() -> None:
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("seed", range(sample(1, 3)))
+@pytest.mark.parametrize("seed", range(sample(1, 1, 3)))
 def test_naming_any_part_of_a_corner_never_worsens_the_outcome(seed: int) -> None:
     """Random rows and ranges of blocks of a corner that is torn off its return, against the outcome without a name."""
     rng = np.random.default_rng(seed)

@@ -108,7 +108,7 @@ def wall(law: JointLaw, rng: np.random.Generator) -> Model:
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("seed", range(sample(1, 12)))
+@pytest.mark.parametrize("seed", range(sample(1, 4, 12)))
 def test_random_bonded_walls_are_the_limit_of_stiff_joints(seed: int) -> None:
     rng = np.random.default_rng(seed)
     problem = pushed(concio.assemble(wall(bonded(1e5), rng)).problem(), rng.uniform(-0.5, 0.5, 2))
@@ -120,7 +120,7 @@ def test_random_bonded_walls_are_the_limit_of_stiff_joints(seed: int) -> None:
     assert nearer == pytest.approx(0.1 * near, rel=0.2)  # what is left falls in proportion to the compliance
 
 
-@pytest.mark.parametrize("seed", range(sample(2, 12)))
+@pytest.mark.parametrize("seed", range(sample(1, 4, 12)))
 def test_cracked_or_not_the_answer_is_that_of_the_interior_point(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     rng = np.random.default_rng([7, seed])
     law = bonded(10.0 ** rng.uniform(0.3, 2.0), rng.uniform(0.5, 1.0))

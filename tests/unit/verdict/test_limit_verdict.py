@@ -167,7 +167,7 @@ def test_a_footing_that_twists_is_designed_with_an_even_pressure_whatever_its_po
         assert "is not counted" in "\n".join(found.verdict.limits)
 
 
-@pytest.mark.parametrize("points", ["corners", 4, 6, 8, 12][: sample(2, 5)])
+@pytest.mark.parametrize("points", ["corners", 4, 6, 8, 12][: sample(1, 3, 5)])
 def test_the_headline_of_a_twisted_footing_lies_within_a_thousandth_of_even_pressure(points: str | int) -> None:
     """It went 1.503, 1.547, 1.503 with the grid, steps being a hundredth of a bound of 2.83; now both are given."""
     found = concio.limit(footing(points), search=False)
@@ -201,7 +201,7 @@ def walls(seed: int) -> Model:
     return concio.wall(length=rng.uniform(0.3, 0.6), height=0.5, block_size=(0.3, 0.25), **options)
 
 
-@pytest.mark.parametrize("seed", range(sample(1, 30)))
+@pytest.mark.parametrize("seed", range(sample(1, 6, 30)))
 def test_what_to_design_with_is_least_and_below_the_bound(seed: int) -> None:
     found = concio.limit(walls(seed), path=True, steps=True, search=True)
     low, top = found.bracket
@@ -218,7 +218,7 @@ def test_what_to_design_with_is_least_and_below_the_bound(seed: int) -> None:
     assert "not carried" not in text
 
 
-@pytest.mark.parametrize("seed", range(sample(1, 12)))
+@pytest.mark.parametrize("seed", range(sample(1, 4, 12)))
 def test_a_load_s_times_as_large_has_one_s_th_of_the_multiplier_and_the_same_kN(seed: int) -> None:
     model = walls(seed)
     s = float(np.exp(np.random.default_rng(seed).uniform(-3, 3)))
@@ -231,7 +231,7 @@ def test_a_load_s_times_as_large_has_one_s_th_of_the_multiplier_and_the_same_kN(
     assert two.associated.multiplier * s == pytest.approx(one.associated.multiplier, rel=1e-6)
 
 
-@pytest.mark.parametrize("seed", range(sample(1, 12)))
+@pytest.mark.parametrize("seed", range(sample(1, 4, 12)))
 def test_names_of_groups_and_a_block_elsewhere_change_nothing(seed: int) -> None:
     model = walls(seed)
     one = concio.limit(model, search=False)

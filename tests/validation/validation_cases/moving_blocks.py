@@ -101,7 +101,7 @@ def rolling(sides: int) -> tuple[float, float]:
 
 
 def painleve(direction: float) -> concio.DynamicsResult:
-    q, thick = np.arctan(2.0), 1e-3
+    q, thick = np.arctan(2.0), 1e-2  # no step passes more than the thickness
     c, s = np.cos(q), np.sin(q)
     outline = rectangle(0.0, -thick / 2, 1.0, thick) @ np.array([[c, s], [-s, c]])
     outline[:, 1] -= outline[:, 1].min()
