@@ -102,7 +102,7 @@ def test_an_assessment_says_so_in_both_languages() -> None:
     assert "unseen" in [item.kind for item in found.open]
 
 
-@settings(max_examples=sample(10, 60), deadline=None)
+@settings(max_examples=sample(10, 25, 60), deadline=None)
 @given(st.floats(-14, -3), st.floats(-3, 2), st.integers(2, 3))
 def test_what_is_seen_depends_on_shares_alone(share: float, size: float, dim: int) -> None:
     """Whatever the size, in plane and space, and whatever else stands unconnected."""

@@ -73,7 +73,7 @@ def read(text: str) -> concio.Model | concio.InputError:
 
 
 @pytest.mark.long
-@settings(max_examples=sample(40, 150), deadline=None)
+@settings(max_examples=sample(25, 100, 150), deadline=None)
 @given(mutated())
 def test_a_changed_file_is_a_model_or_a_message(data: dict[str, Any]) -> None:
     found = read("\n".join(_pairs(data)))
@@ -84,7 +84,7 @@ def test_a_changed_file_is_a_model_or_a_message(data: dict[str, Any]) -> None:
         assert concio.loads(concio.dumps(found)).title == found.title
 
 
-@settings(max_examples=sample(50, 150), deadline=None)
+@settings(max_examples=sample(25, 150), deadline=None)
 @given(st.text(max_size=200))
 def test_any_text_is_a_model_or_a_message(text: str) -> None:
     found = read(text)

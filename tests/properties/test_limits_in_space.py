@@ -67,7 +67,7 @@ def corner(rng: np.random.Generator) -> Model:
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("seed", range(sample(3, 12)))
+@pytest.mark.parametrize("seed", range(sample(1, 5, 12)))
 def test_numbers_of_a_random_corner_stand_in_order(seed: int) -> None:
     in_order(concio.limit(corner(np.random.default_rng([25, 11, seed]))))
 
@@ -101,7 +101,7 @@ GRIDS = ["corners", 2, 3, 4, 5, 6, 8]
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("length", [1.0, 2.0])
+@pytest.mark.parametrize("length", sample([2.0], [2.0], [1.0, 2.0]))  # square ones in test_limit_verdict
 @pytest.mark.parametrize("points", GRIDS)
 def test_the_torsion_that_is_designed_with_does_not_depend_on_the_contact_points(
     points: int | str, length: float

@@ -33,7 +33,7 @@ QUICK: dict[str, dict[str, int]] = {
 """The iterative family, each with a patience that keeps the test short."""
 
 few = settings(
-    max_examples=sample(2, 12), deadline=None, suppress_health_check=[HealthCheck.too_slow]
+    max_examples=sample(2, 5, 12), deadline=None, suppress_health_check=[HealthCheck.too_slow]
 )
 
 

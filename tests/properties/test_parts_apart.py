@@ -22,9 +22,9 @@ from concio.problem.certificate import certify
 from concio.problem.solution import Status
 from concio.solvers.relaxation.free_motion import free_motion
 from concio.studies.compare import compare
-from samples import first, sample
+from samples import sample
 
-few = settings(max_examples=sample(4, 40), deadline=None)
+few = settings(max_examples=sample(4, 12, 40), deadline=None)
 
 FALLS = (Status.NO_EQUILIBRIUM, Status.COLLAPSES, Status.NO_COULOMB_STATE)
 
@@ -114,7 +114,7 @@ def test_an_unconnected_body_changes_no_digit_of_the_rest(dim, kind, law, build,
 
 
 @pytest.mark.parametrize("dim", [2, 3])
-@pytest.mark.parametrize("h", first(2, [1e-3, 100.0, 0.02, 1.0]))
+@pytest.mark.parametrize("h", sample([1e-3, 100.0], [1e-3, 100.0], [1e-3, 0.02, 1.0, 100.0]))
 def test_a_block_that_nothing_presses_falls_at_any_stiffness(dim, h):
     """Whatever closes under its weight: 1e-4 m or 1e-15 m; and whether or not joints give way along themselves."""
     for k in sample([1e12, 1e15], 10.0 ** np.arange(5, 16)):
@@ -215,6 +215,7 @@ def bodies_of(assembly):
     return assembly.pairs.body_a, assembly.pairs.body_b
 
 
+@pytest.mark.long  # test_a_block_that_nothing_presses_falls_at_any_stiffness
 def test_rigid_joints_beside_a_soft_ground():
     """Hard joints are given a compliance that is vanishing beside the ground's, and the block still falls."""
     for soil in (1e3, 1e5):

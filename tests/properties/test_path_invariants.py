@@ -19,7 +19,7 @@ walls = st.builds(running_bond, st.integers(1, 3), st.integers(1, 4), sizes)
 few = st.builds(running_bond, st.integers(1, 3), st.integers(1, 3), sizes)
 
 
-@settings(max_examples=sample(8, 25), deadline=None)
+@settings(max_examples=sample(8, 12, 25), deadline=None)
 @given(walls, st.floats(0.2, 0.9), st.sampled_from([1.0, -1.0]), st.floats(0.5, 4.0))
 def test_pushover_of_small_walls(assembly, mu, side, ratio):
     push = assembly.load(side, 0)
@@ -48,7 +48,7 @@ def test_mirror_image(assembly, mu):
     assert abs(ends[0].peak - ends[1].peak) <= 1e-9
 
 
-@settings(max_examples=sample(1, 8), deadline=None)
+@settings(max_examples=sample(1, 3, 8), deadline=None)
 @given(few, st.floats(0.3, 0.8), st.floats(1e-6, 1e-2))
 def test_stiffness_of_the_joints_scales_displacements_only(assembly, mu, compliance):
     """Without gaps, rigid blocks on joints ten times softer move ten times as much at the same load."""
@@ -59,7 +59,7 @@ def test_stiffness_of_the_joints_scales_displacements_only(assembly, mu, complia
     assert np.abs(10 * a.displacement - b.displacement).max() <= 1e-9 * np.abs(b.displacement).max()
 
 
-@pytest.mark.parametrize("seed", range(sample(1, 6)))
+@pytest.mark.parametrize("seed", range(sample(1, 3, 6)))
 def test_slips_and_offsets_of_a_state_are_those_of_its_displacements(seed: int) -> None:
     """What a pair has slipped for good is its motion less what its compliance gives back, in metres, of any size."""
     rng = np.random.default_rng([18, seed])

@@ -16,7 +16,7 @@ import concio
 from concio.analysis.motion.push_result import PushEnding
 from samples import sample
 
-few = settings(max_examples=sample(2, 8), deadline=None)
+few = settings(max_examples=sample(1, 4, 8), deadline=None)
 
 
 def numbers(found, names):

@@ -39,6 +39,7 @@ def test_walls_with_two_openings_are_fractions(name: str, published: float) -> N
     assert float(Fraction(made["lower"])) == pytest.approx(published, abs=5e-6)
 
 
+@pytest.mark.long  # test_arches_are_fractions
 def test_wall_six_is_a_fraction_of_two_hundred_digits() -> None:
     """146 blocks with four openings; the linear programme in floating point is the only other number we have."""
     wall = concio.wall_of_courses(

@@ -8,13 +8,14 @@ from validation_cases import one_node
 from validation_cases.row import check
 
 from concio.solvers.path.event_path import Outcome
+from samples import sample
 
 
 def test_rows():
     check(one_node.rows())
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=sample(20, 60), deadline=None)
 @given(st.floats(0.0, 3.0), st.floats(-4.0, 4.0))
 def test_an_answer_is_always_one_of_the_solutions(mu, load):
     assume(mu == 0.0 or mu > 1e-3)

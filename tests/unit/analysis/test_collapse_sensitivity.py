@@ -41,7 +41,7 @@ def compare(model: concio.Model, names: tuple[str, ...] = ()) -> int:
 
 
 @pytest.mark.long
-@settings(max_examples=sample(1, 2), deadline=None)
+@settings(max_examples=sample(1, 1, 2), deadline=None)
 @given(st.floats(0.36, 0.8), st.integers(6, 8))
 def test_arches_that_slip_and_turn(friction: float, voussoirs: int) -> None:
     compare(pushed_arch(friction, voussoirs))

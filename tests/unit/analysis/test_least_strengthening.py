@@ -44,7 +44,7 @@ def wall(friction: float, at: float) -> Model:
 
 
 @pytest.mark.long
-@settings(max_examples=sample(2, 10), deadline=None)
+@settings(max_examples=sample(2, 4, 10), deadline=None)
 @given(st.floats(0.3, 0.9), st.floats(0.8, 2.9), st.floats(1.05, 1.6))
 def test_the_least_tie_is_that_of_a_bisection(friction: float, at: float, more: float) -> None:
     model = wall(friction, at)
@@ -64,7 +64,7 @@ def test_the_least_tie_is_that_of_a_bisection(friction: float, at: float, more: 
     assert least.programmes < 20
 
 
-@settings(max_examples=sample(2, 8), deadline=None)
+@settings(max_examples=sample(2, 4, 8), deadline=None)
 @given(st.floats(0.5, 0.9), st.lists(st.floats(0.3, 2.9), min_size=2, max_size=4, unique=True), st.floats(1.1, 1.5))
 def test_the_best_height_of_a_tie_needs_the_least_of_all(friction: float, heights: list[float], more: float) -> None:
     """Each height by itself, drawn there; the tie moves with its block."""

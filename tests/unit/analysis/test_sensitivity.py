@@ -52,7 +52,7 @@ def laws(model: Model, **more: float) -> Model:
 
 
 @pytest.mark.long
-@settings(max_examples=sample(2, 8), deadline=None)
+@settings(max_examples=sample(2, 3, 8), deadline=None)
 @given(st.floats(0.31, 0.79), st.floats(0.3, 0.6), st.floats(2.0, 9.0), st.floats(0.0, 20.0))
 def test_walls_that_slide_and_tip(friction: float, length: float, cohesion: float, load: float) -> None:
     wall = concio.wall(length=3 * length, height=1.0, block_size=(length, 0.25), friction=friction, block="rigid",

@@ -58,7 +58,7 @@ def compare(model: concio.Model) -> int:
 
 
 @pytest.mark.long
-@settings(max_examples=sample(1, 5), deadline=None)
+@settings(max_examples=sample(1, 2, 5), deadline=None)
 @given(st.floats(0.42, 0.7), st.floats(0.0, 0.14))
 def test_walls_of_rigid_blocks(friction: float, horizontal: float) -> None:
     compare(concio.wall(length=2.0, height=0.75, block_size=(0.5, 0.25), friction=friction, horizontal=horizontal,
@@ -66,7 +66,7 @@ def test_walls_of_rigid_blocks(friction: float, horizontal: float) -> None:
 
 
 @pytest.mark.long
-@settings(max_examples=sample(1, 5), deadline=None)
+@settings(max_examples=sample(1, 2, 5), deadline=None)
 @given(st.floats(0.4, 0.8), st.floats(0.5, 4.0), st.integers(5, 7))
 def test_elastic_arches_that_slip_and_open(friction: float, load: float, voussoirs: int) -> None:
     compare(concio.arch(span=3.0, ring=0.4, voussoirs=voussoirs, friction=friction, crown_load=load, unit_weight=25))

@@ -27,7 +27,7 @@ def buttressed(weight: float, width: float, height: float) -> Model:
 
 
 @pytest.mark.long
-@settings(max_examples=sample(3, 30), deadline=None)
+@settings(max_examples=sample(3, 8, 30), deadline=None)
 @given(st.floats(0.3, 1.5), st.floats(1.0, 3.5), st.floats(0.15, 0.5))
 def test_the_least_weight_is_that_of_a_bisection(width: float, height: float, target: float) -> None:
     found = concio.limit(buttressed(1.0, width, height), path=False).least(target, load="buttress")

@@ -88,6 +88,7 @@ def test_the_report_holds_the_verdict_and_every_section(language: str, page_in: 
     assert ("dovuto alla spinta del terreno" in text) == (language == "it")
 
 
+@pytest.mark.long  # its figures are drawn
 def test_the_report_tells_every_datum_that_was_given_and_has_no_english_in_italian(
     found: concio.BridgeResult, page_in: Callable[[str], str]
 ) -> None:

@@ -74,6 +74,7 @@ def test_halved_files_have_the_same_outline_and_the_same_cell(wall, tmp_path):
     assert panel.generator["courses"] == 4
 
 
+@pytest.mark.long  # the numbers are looked at without figures
 def test_figures_show_blocks_and_continuum_at_one_scale(wall):
     found = concio.compare_with_continuum(concio.load(wall), factors={"live": 0.5}, mesh_size=0.4)
     left, middle, right = found.plot.displacement(scale=100.0)

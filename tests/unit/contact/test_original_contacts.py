@@ -49,7 +49,7 @@ def wall(kind, law):
 
 @pytest.mark.parametrize("kind", ["rigid", "elastic"])
 @pytest.mark.parametrize("law", range(len(LAWS)))
-@pytest.mark.parametrize("seed", range(sample(1, 8)))
+@pytest.mark.parametrize("seed", range(sample(1, 4, 8)))
 def test_pairs_written_twice_are_the_same(kind, law, seed):
     """Rows, gaps, areas and what turning adds, of bodies that have moved at random; laws and openings too."""
     rng = np.random.default_rng(seed)

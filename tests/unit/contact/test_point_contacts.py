@@ -108,7 +108,7 @@ def tripod(places: np.ndarray) -> Model:
     return Model((*(spike(f"p{k}", *p) for k, p in enumerate(places)), slab), STONE, LAW, loads=DOWN3)
 
 
-@pytest.mark.parametrize("seed", range(sample(4, 25)))
+@pytest.mark.parametrize("seed", range(sample(4, 10, 25)))
 def test_a_slab_on_three_corners_has_the_reactions_of_three_equations(seed: int) -> None:
     places = np.random.default_rng(seed).uniform(0.1, 1.9, (3, 2))
     forces = np.linalg.solve(np.vstack([np.ones(3), places.T]), 16.0 * np.array([1.0, 1.0, 1.0]))
@@ -181,7 +181,7 @@ def test_a_corner_on_a_corner_is_told_and_carries_along_the_middle_direction() -
 
 
 @pytest.mark.parametrize("space", [False, True])
-@pytest.mark.parametrize("seed", range(sample(3, 20)))
+@pytest.mark.parametrize("seed", range(sample(3, 8, 20)))
 def test_order_mirror_units_and_bodies_far_away_change_nothing(seed: int, space: bool) -> None:
     rng = np.random.default_rng(seed)
     places = np.array([(0.2, 0.2), (1.7, 0.3), (0.6, 1.5)])

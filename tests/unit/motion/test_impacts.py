@@ -91,7 +91,7 @@ def moment(found, state_velocity, spin, centre):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("seed", range(sample(1, 4)))
+@pytest.mark.parametrize("seed", range(sample(1, 2, 4)))
 def test_free_collisions_that_return_everything_keep_energy_and_angular_momentum(seed):
     found = collision(np.random.default_rng(seed), friction=0.0, restitution=1.0)
     kinetic = found.energy["kinetic"]
@@ -105,7 +105,7 @@ def test_free_collisions_that_return_everything_keep_energy_and_angular_momentum
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("seed", range(sample(1, 6)))
+@pytest.mark.parametrize("seed", range(sample(1, 3, 6)))
 def test_impacts_never_give_energy(seed):
     rng = np.random.default_rng(100 + seed)
     found = collision(rng, friction=float(rng.choice([0.3, 1.0, 2.0])), restitution=float(rng.uniform(0, 1)))
@@ -171,7 +171,7 @@ def test_a_lintel_is_hit_when_the_feet_are(share):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("share", [0.15, 0.2, 0.22, 0.25, 0.3, 0.5])
+@pytest.mark.parametrize("share", sample([0.2], [0.15, 0.22, 0.5], [0.15, 0.2, 0.22, 0.25, 0.3, 0.5]))
 def test_what_a_trilith_keeps_tends_to_its_closed_form(share):
     got, wanted = kept_by(share, 2.5e-4)
     assert got == pytest.approx(wanted, abs=0.006)

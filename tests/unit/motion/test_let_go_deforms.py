@@ -52,6 +52,7 @@ def test_a_block_on_mortar_comes_to_rest_where_its_weight_presses_the_joint():
     assert "not for hard ones" not in found.verdict.answer
 
 
+@pytest.mark.long  # the elastic one comes to rest, too
 def test_a_block_on_a_smooth_floor_comes_to_rest_where_its_tie_holds_it():
     """Push over stiffness of the tie, within what counts as the place where an equilibrium was certified."""
     tie = concio.Tie("tie", "floor", (-1.0, 0.5 * HEIGHT), "stone", (0.0, 0.5 * HEIGHT), 500.0)
@@ -73,6 +74,7 @@ def test_an_elastic_block_comes_to_rest_as_its_load_step_has_it():
     assert np.abs(np.asarray(step.reactions["floor"])[:2]) == pytest.approx([0.1 * WEIGHT, WEIGHT], rel=1e-6)
 
 
+@pytest.mark.long  # the one that comes to rest below
 def test_an_elastic_block_beyond_its_limit_is_seen_to_fall_and_all_of_it_is_said_in_italian():
     tall = replace(block(concio.Elastic(E=1e5, nu=0.2, unit_weight=UNIT), 2.2, friction=5.0))
     found = concio.let_go(undecided(tall))
@@ -95,6 +97,7 @@ def test_every_outcome_and_what_is_seen_is_said_in_italian():
         assert {piece.language for piece in italian(found.verdict.answer)} == {"it"}, found.verdict.answer
 
 
+@pytest.mark.long  # test_let_go asks by the command without a directory
 def test_the_directory_of_a_step_that_was_let_go_has_its_motion(tmp_path: Path, monkeypatch):
     model = tmp_path / "block.toml"
     model.write_text(dumps(block(concio.Rigid(UNIT), friction=0.6)), encoding="utf-8")

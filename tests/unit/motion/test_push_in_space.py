@@ -83,7 +83,7 @@ def test_a_block_turns_over_its_edge_as_hand_statics_says(direction, half):
     assert axis == pytest.approx(np.cross([0.0, 0.0, 1.0], way), abs=1e-6)
 
 
-@pytest.mark.parametrize("seed", range(sample(2, 8)))
+@pytest.mark.parametrize("seed", range(sample(1, 4, 8)))
 def test_a_block_pushed_askew_turns_over_the_edge_that_gives_first(seed):
     """Along a direction n the multiplier is the least of a / (n_x h) and b / (n_y h)."""
     angle = np.random.default_rng(seed).uniform(0.15, 1.4)
@@ -146,6 +146,7 @@ def test_iterations_that_creep_or_converge_go_on_the_same_way(stiffness, control
         assert stiffness * y == pytest.approx(1e-3, rel=1e-9)
 
 
+@pytest.mark.long  # the pillar extruded and turned
 def test_a_model_that_is_turned_about_the_vertical_is_pushed_the_same():
     about = Rotation.from_rotvec([0.0, 0.0, 0.7]).as_matrix()
     found = concio.push(TALL, direction=(1, 0.4))

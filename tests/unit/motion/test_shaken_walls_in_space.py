@@ -48,6 +48,7 @@ def test_the_law_of_an_impact_stays_as_it_is_while_what_turns_in_a_step_is_worke
     assert found.steps.residual.max() <= 1e-9
 
 
+@pytest.mark.long  # a corner of several blocks in space
 def test_a_corner_thrown_outwards_is_followed_where_slips_send_newtons_method_in_circles():
     # with the compliance of the joints alone, no step was found from 0.102 s on, and none smaller is tried here
     corner = concio.walls(

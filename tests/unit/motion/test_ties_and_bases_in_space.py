@@ -95,7 +95,7 @@ def test_a_block_on_a_shaken_base_is_that_of_the_plane(moves):
     assert abs(state.centre[1, 0]) > 1e-3
 
 
-@pytest.mark.parametrize("seed", range(sample(1, 8)))
+@pytest.mark.parametrize("seed", range(sample(1, 4, 8)))
 def test_a_block_leaves_its_tie_with_what_it_has_when_that_breaks(seed):
     """v^2 = v0^2 - (omega b)^2 in any direction, whatever part of a step is left when the elongation b is reached."""
     rng = np.random.default_rng(seed)

@@ -88,6 +88,7 @@ def test_a_block_without_friction_stays_where_it_is():
     assert abs(Rotation.from_matrix(found.end.rotation[0]).as_rotvec()[2]) > 0.15
 
 
+@pytest.mark.long  # the block that goes with a base below
 def test_a_block_on_a_floor_that_turns_extruded_and_turned_is_that_of_the_plane():
     width, height, h = 0.4, 1.2, 1e-3
     depth = 2.0 * width * height / (width + height)

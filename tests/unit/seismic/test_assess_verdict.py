@@ -57,7 +57,7 @@ def rod(stiffness: float = 5000.0, most: float | None = 12.0, longest: float | N
 # -- what pushes ------------------------------------------------------------------------------------------------------
 
 
-@settings(max_examples=sample(2, 12), deadline=None)
+@settings(max_examples=sample(2, 4, 12), deadline=None)
 @given(st.lists(st.sampled_from(["live", "wind", "earthquake", "q", "roof"]), min_size=3, max_size=3, unique=True),
        st.floats(0.0, 0.3))  # fmt: skip
 def test_what_groups_are_called_changes_nothing(names: list[str], wind: float) -> None:
@@ -73,7 +73,7 @@ def test_what_groups_are_called_changes_nothing(names: list[str], wind: float) -
     assert second.zeta == pytest.approx(first.zeta, rel=1e-12)
 
 
-@settings(max_examples=sample(2, 12), deadline=None)
+@settings(max_examples=sample(2, 4, 12), deadline=None)
 @given(st.floats(0.01, 0.35))
 def test_wind_along_the_push_reduces_what_is_left(pressure: float) -> None:
     gust = Load("pressure", (pressure,), bodies=("c1",), edge=((0.6, 0.0), (0.6, 6.0)), group="live")
@@ -112,7 +112,7 @@ def test_what_pushes_up_is_no_weight() -> None:
 
 
 @pytest.mark.long
-@settings(max_examples=sample(2, 12), deadline=None)
+@settings(max_examples=sample(2, 4, 12), deadline=None)
 @given(st.integers(2, 4), st.data())
 def test_naming_a_part_never_worsens_the_outcome(n: int, data: st.DataObject) -> None:
     """The least multiplier is not always the least zeta_E: parts that nobody names are sought as well."""
@@ -138,7 +138,7 @@ def test_the_headline_is_the_least_zeta_at_the_ultimate_limit_state() -> None:
     assert "searches made: 3" in " ".join(found.verdict.limits)
 
 
-@settings(max_examples=sample(2, 12), deadline=None)
+@settings(max_examples=sample(2, 4, 12), deadline=None)
 @given(st.floats(2.0, 6.0), st.floats(0.25, 0.6), st.floats(2.0, 6.0), st.floats(0.25, 0.6))
 def test_structures_side_by_side_do_not_change_each_other(h1: float, t1: float, h2: float, t2: float) -> None:
     one, other = strip(1, h1, t1), strip(1, h2, t2, x=8.0, word="d")
@@ -163,7 +163,7 @@ def test_a_corner_that_fails_fails_without_a_name() -> None:
 # -- ties -------------------------------------------------------------------------------------------------------------
 
 
-@settings(max_examples=sample(2, 12), deadline=None)
+@settings(max_examples=sample(2, 4, 12), deadline=None)
 @given(st.floats(2e3, 2e4), st.floats(0.4, 34.0), st.floats(1.1, 20.0))
 def test_a_tie_carries_at_most_what_it_has_when_it_breaks(stiffness: float, force: float, more: float) -> None:
     """Above 36 kN at its top the strip no longer overturns, it slides: the test beside this one."""
@@ -180,7 +180,7 @@ def test_a_tie_carries_at_most_what_it_has_when_it_breaks(stiffness: float, forc
     assert "breaks before it yields" in " ".join(brittle.verdict.limits)
 
 
-@settings(max_examples=sample(2, 12), deadline=None)
+@settings(max_examples=sample(2, 4, 12), deadline=None)
 @given(st.floats(30.0, 42.0))
 def test_a_strong_tie_leaves_sliding_as_the_least(force: float) -> None:
     """Overturning about the toe needs (10 + 3.5 F) / 80, sliding at friction 0.8 needs 0.8 + F / 40."""
@@ -189,7 +189,7 @@ def test_a_strong_tie_leaves_sliding_as_the_least(force: float) -> None:
     assert worst.multiplier == pytest.approx(min((40 * 0.25 + 3.5 * force) / 80, 0.8 + force / 40), rel=1e-9)
 
 
-@settings(max_examples=sample(2, 12), deadline=None)
+@settings(max_examples=sample(2, 4, 12), deadline=None)
 @given(st.floats(3.0, 20.0), st.floats(0.005, 0.04))
 def test_rows_and_summary_say_the_same(most: float, longest: float) -> None:
     """A displacement that is not met stood above a zeta_E of 2: the wall moves before its tie pulls."""
@@ -200,6 +200,7 @@ def test_rows_and_summary_say_the_same(most: float, longest: float) -> None:
             assert outcome.holds == all(c.holds for c in rows)
 
 
+@pytest.mark.long  # no yield force helps a tie in the plane
 def test_a_wall_in_space_with_a_tie_is_the_wall_in_the_plane() -> None:
     """The peak was 0.163 of 0.2124, the break at 0.60 mm of 0.457, and d_SLV 2.5 times too large."""
     flat = assessed(plain(*strip(), ties=(rod(longest=4e-4),))).worst

@@ -35,7 +35,7 @@ def asked(model: Model, **more: object) -> tuple[LocalMechanism, Sensitivity | N
 
 
 @pytest.mark.long
-@settings(max_examples=sample(2, 10), deadline=None)
+@settings(max_examples=sample(2, 4, 10), deadline=None)
 @given(st.floats(0.05, 0.09), st.integers(2, 4), st.floats(15.0, 25.0))
 def test_a_wall_that_slides_on_its_foot(friction: float, n: int, weight: float) -> None:
     """alpha_0 = mu: every weight rests on the joint that slides; nothing else matters."""
@@ -49,7 +49,7 @@ def test_a_wall_that_slides_on_its_foot(friction: float, n: int, weight: float) 
 
 
 @pytest.mark.long
-@settings(max_examples=sample(2, 8), deadline=None)
+@settings(max_examples=sample(1, 2, 8), deadline=None)
 @given(st.floats(0.31, 0.45), st.floats(0.42, 0.6), st.floats(1.0, 6.0))
 def test_walls_whose_blocks_slide_and_turn(friction: float, length: float, load: float) -> None:
     """Each model beside has its own search; what is not given is not compared."""

@@ -16,7 +16,7 @@ from samples import sample
 from seismic_walls import overturning, site
 
 
-@settings(max_examples=sample(3, 12), deadline=None)
+@settings(max_examples=sample(3, 6, 12), deadline=None)
 @given(st.floats(1.0, 4.0), st.floats(0.5, 1.0))
 def test_onset_goes_with_the_share_of_the_mass_and_the_linear_demand_with_q(q: float, share: float) -> None:
     """a_0* = alpha_0 g / (e* FC), and the linear check compares it with a_max S / q."""

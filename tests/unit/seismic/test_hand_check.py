@@ -37,7 +37,7 @@ def agreement(model: Model, **more: object) -> float:
     return max(check.difference for check in found.hand_checks)
 
 
-@settings(max_examples=sample(3, 20), deadline=None)
+@settings(max_examples=sample(3, 8, 20), deadline=None)
 @given(
     st.integers(1, 4), st.floats(2.0, 8.0), st.floats(0.3, 0.9), st.floats(0.05, 0.8),
     st.sampled_from([None, 400.0, 4000.0]), st.floats(0.0, 6.0), st.floats(0.001, 0.05),
@@ -75,7 +75,7 @@ def test_a_wall_in_space_and_one_whose_courses_slide() -> None:
     assert agreement(sliding, direction="right") < 1e-9
 
 
-@settings(max_examples=sample(5, 40), deadline=None)
+@settings(max_examples=sample(5, 12, 40), deadline=None)
 @given(st.floats(0.0, 0.7), st.floats(0.1, 0.9), st.floats(-30.0, 30.0), st.sampled_from(["pressure", "traction"]),
        st.sampled_from([None, "lower", "upper", "both"]), st.floats(0.2, 2.0))  # fmt: skip
 def test_forces_are_those_of_the_program(

@@ -45,7 +45,7 @@ def wall(*rectangles: tuple[float, float, float, float], dim: int = 2) -> Model:
     return Model((*boxes, base), {"block": Rigid(20.0)}, {"joint": JointLaw(0.6)}, loads=(Load("weight", (0, 0, -1)),))
 
 
-@settings(max_examples=sample(10, 60), deadline=None)
+@settings(max_examples=sample(10, 20, 60), deadline=None)
 @given(st.lists(st.tuples(st.floats(0.3, 2.0), st.floats(0.3, 2.0)), min_size=1, max_size=4),
        st.floats(0.5, 2.0), st.floats(0.2, 0.6), st.sampled_from([2, 3]))  # fmt: skip
 def test_openings_are_where_they_were_left(
@@ -68,7 +68,7 @@ def test_openings_are_where_they_were_left(
     assert parts.there["openings"] == parts.sought["openings"] == 2 * len(sides)
 
 
-@settings(max_examples=sample(5, 30), deadline=None)
+@settings(max_examples=sample(5, 10, 30), deadline=None)
 @given(st.integers(0, 2**31), st.sampled_from([1e-5, 1e-4, 3e-4]))
 def test_what_a_drawing_is_out_by_is_no_opening_and_no_level(seed: int, out_by: float) -> None:
     """Corners that are out by some tenths of a millimetre leave slits between stones, at the top of a wall too."""

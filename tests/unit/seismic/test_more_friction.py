@@ -75,7 +75,7 @@ def test_what_a_step_left_of_overlap_in_a_contact_without_force_does_not_end_the
         assert stated(sequence.contacts, q, sequence.size).gap.min() > -1e-9 * sequence.size
 
 
-@pytest.mark.parametrize("seed", range(sample(4, 40)))
+@pytest.mark.parametrize("seed", range(sample(4, 12, 40)))
 def test_a_search_that_ends_early_without_forces_agrees_with_one_that_does_not(seed: int) -> None:
     """Where no forces balance the loads, the bound of the motions falls without bound; elsewhere nothing changes."""
     rng = np.random.default_rng(seed)

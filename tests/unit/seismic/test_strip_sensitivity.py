@@ -3,13 +3,22 @@
 from __future__ import annotations
 
 import re
+from functools import cache
 
 import numpy as np
 import pytest
 
 import concio
+from concio.analysis.sensitivity import Sensitivity
 from concio.report.assessment_texts import Texts
 from concio.report.sensitivity_part import sensitivity_html
+
+
+@cache
+def assessed() -> tuple[concio.Assessment, Sensitivity | None]:
+    site = concio.Site(hazard={"SLV": {"a_g": 0.20, "F0": 2.45, "Tc": 0.32}}, soil="B")
+    found = concio.assess(facade(), site=site, levels=["SLV"])
+    return found, found.sensitivity()
 
 
 def facade() -> concio.Model:
@@ -31,11 +40,9 @@ def facade() -> concio.Model:
     [("en", "thickness of the wall", "all heights"), ("it", "spessore del muro", "tutte le altezze")],
 )
 def test_a_free_strip_depends_on_thickness_over_height(language: str, thick: str, high: str) -> None:
-    site = concio.Site(hazard={"SLV": {"a_g": 0.20, "F0": 2.45, "Tc": 0.32}}, soil="B")
-    found = concio.assess(facade(), site=site, levels=["SLV"])
+    found, rows = assessed()
     assert found.worst is not None
     assert found.worst.section is not None
-    rows = found.sensitivity()
     assert rows is not None
     weight, top = 19 * 0.5 * 5.0, 20.0 * 0.5  # [kN/m]; both push, at half of the height and on top
     assert rows["length of x"].per_percent[1] > 0 > rows["length of y"].per_percent[1]

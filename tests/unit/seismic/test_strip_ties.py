@@ -55,7 +55,7 @@ def test_a_tie_below_does_not_hold_what_overturns_above_it() -> None:
 
 
 @pytest.mark.long
-@settings(max_examples=sample(3, 30), deadline=None)
+@settings(max_examples=sample(3, 8, 30), deadline=None)
 @given(
     st.lists(st.tuples(st.floats(0.25, 0.8), st.floats(0.4, 1.5)), min_size=2, max_size=6),
     st.floats(0.0, 60.0),

@@ -70,6 +70,7 @@ def test_elastic_blocks_in_joints_far_stronger_than_their_loads_are_decided(stre
     assert distance(found.displacement, tied(problem)) < 1e-9
 
 
+@pytest.mark.long  # the random walls
 def test_stiff_joints_tend_to_hard_ones_late_where_couplings_nearly_say_the_same_twice() -> None:
     """At the crown three bodies meet whose meshes do not match: rows of C are nearly dependent, and bind late."""
     problem = concio.assemble(dome(1e6)).problem()
@@ -183,6 +184,7 @@ def test_a_strength_that_is_not_reached_changes_no_force() -> None:
         assert distance(strong.contacts.force_on_b, weak.contacts.force_on_b) < 1e-8
 
 
+@pytest.mark.long  # walls of bonded joints
 def test_a_bonded_dome_may_be_turned() -> None:
     turned = concio.place(dome(1e6), turn=37.0, axis=(1.0, 2.0, 3.0))
     there, here = (concio.assemble(m).problem() for m in (dome(1e6), turned))

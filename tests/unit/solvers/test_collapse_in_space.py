@@ -125,6 +125,7 @@ def test_a_mechanism_of_a_programme_has_the_largest_entry_one(push: tuple[float,
     assert np.abs(found.velocity).max() == pytest.approx(1.0, abs=1e-15)
 
 
+@pytest.mark.long  # the corner below slides by them
 def test_programmes_with_frozen_strength_end_where_their_digits_are_enough(monkeypatch: pytest.MonkeyPatch) -> None:
     """The same state of a dry corner as from programmes solved to their last digits, with fewer steps of them."""
     model = concio.walls(

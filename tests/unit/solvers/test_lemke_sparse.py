@@ -24,7 +24,7 @@ from concio.solvers.pivoting.pair_rows import PairSystem
 from concio.solvers.pivoting.sparse_lemke import solve
 from contact_problems import rigid, wall
 from lcp_problems import small_wall
-from samples import first
+from samples import first, sample
 
 
 def test_rows_replaced_one_by_one_give_the_inverse_of_the_new_matrix() -> None:
@@ -167,7 +167,7 @@ def test_a_state_is_carried_to_another_load() -> None:
     np.testing.assert_allclose(warm.displacement, cold.displacement, atol=1e-9 * np.abs(cold.displacement).max())
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=sample(5, 15), deadline=None)
 @given(st.integers(0, 10_000))
 def test_crossover_from_wrong_states_reaches_the_same_answer(seed: int) -> None:
     problem = wall(4, 4, alpha=0.25)

@@ -62,6 +62,7 @@ def test_models_of_a_function_say_the_same_as_the_formula() -> None:
     )
 
 
+@pytest.mark.long  # the minimum of two uniforms
 def test_chance_that_a_semicircular_arch_stands() -> None:
     """It stands from t/R = 0.1075 (Milankovitch): t in (.10, .12) gives 0.626; a Latin hypercube misses by 1/n."""
     n = sample(16, 32)

@@ -83,7 +83,7 @@ def test_where_locking_is_right_it_is_said_why() -> None:
     assert found.summary()["design_multiplier"] is None
 
 
-@pytest.mark.parametrize("seed", range(sample(3, 16)))
+@pytest.mark.parametrize("seed", range(sample(2, 8, 16)))
 def test_locked_structures_agree_with_one_step_at_a_large_factor(seed: int) -> None:
     """A pillar pressed by a force that leans within its friction cone, or a block in a slot: limit against run."""
     rng = np.random.default_rng(seed)

@@ -327,6 +327,7 @@ def test_a_name_in_a_table_finds_its_block_in_space(tmp_path: Path) -> None:
     assert marked == [name]
 
 
+@pytest.mark.long  # starts a browser; make journeys does, too
 @pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed")
 def test_collapse_opens_without_errors(sliding: Result, tmp_path: Path) -> None:
     file = write_report(sliding, tmp_path / "report.html", figures=False)
