@@ -69,12 +69,13 @@ def shake(
     from concio.errors import InputError
     from concio.io.motion_file import load_motion
     from concio.model.file.motion_table import motion_table, records_by_axis
-    from concio.model.file.reading import read_tables
+    from concio.model.file.reading import file_units, read_tables
     from concio.model.motion.records import read_record
 
     check_out(out, film, series)
     model = loaded(file, units, engine)
-    table = motion_table(read_tables(file), str(file))
+    data = read_tables(file)
+    table = motion_table(data, str(file), file_units(data, str(file)))
     options: dict[str, Any] = table.arguments()
     if motion is None and pulse is None:
         ground = table.ground(file.parent, model.dim)

@@ -8,12 +8,22 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, TypeVar
 
-from pydantic import Field, StrictInt, StrictStr, ValidationError
+from pydantic import Field, StrictInt, StrictStr, ValidationError, ValidationInfo, field_validator
 
 from concio.model.file.acting_tables import ControlTable
 from concio.model.file.file_errors import first_fault
 from concio.model.file.tables import Name, Table
-from concio.model.file.values import FileUnits, Force, Length, Number, Stress, UnitWeight
+from concio.model.file.values import (
+    Area,
+    FileUnits,
+    Force,
+    Length,
+    Number,
+    Stress,
+    UnitWeight,
+    converted,
+    units_of,
+)
 
 Acceleration = Annotated[StrictStr | float, Field(description="in g, or a text with m/s2")]
 Seconds = Annotated[StrictStr | float, Field(description="in s")]
@@ -118,6 +128,8 @@ class AnchorTable(Table):
     ----
     tie :
         Name of the tie.
+    steel_area :
+        Area of the steel.
     steel_strength :
         Design strength of the steel.
     plate :
@@ -135,7 +147,7 @@ class AnchorTable(Table):
     """
 
     tie: Name
-    steel_area: Annotated[Number | None, Field(description="in m2")] = None
+    steel_area: Area | None = None
     steel_strength: Stress | None = None
     plate: tuple[Length, Length] | None = None
     wall_thickness: Length | None = None
@@ -197,7 +209,7 @@ class StrengthenTable(Table):
     zeta :
         Value that zeta_E is to reach.
     largest :
-        Largest amount that is tried, in kN, m or kN/m2.
+        Largest amount that is tried: a force, a weight, a width or a cohesion.
     side :
         Of a buttress: at which side of these bodies it stands; along y in space alone.
     height :
@@ -211,11 +223,17 @@ class StrengthenTable(Table):
     kind: Literal["tie", "mass", "buttress", "grout"]
     of: list[Name]
     zeta: Number = 1.0
-    largest: Number | None = None
+    largest: Annotated[Any, Field(description="a number in the file's system, or a text with a unit")] = None
     side: Literal["left", "right", "-x", "+x", "-y", "+y"] = "left"
     height: Length | None = None
     unit_weight: UnitWeight = 20.0
     heights: list[Length] = Field(default_factory=list)
+
+    @field_validator("largest", mode="after")
+    @classmethod
+    def _largest(cls, value: Any, info: ValidationInfo) -> float | None:
+        kind = {"buttress": "length", "grout": "stress"}.get(info.data.get("kind", ""), "force")
+        return None if value is None else converted(value, kind, units_of(info))
 
 
 class ReportTextTable(Table):

@@ -15,6 +15,7 @@ from pydantic import BeforeValidator, Field, StrictBool, StrictStr, ValidationEr
 from concio.errors import InputError
 from concio.model.file.file_errors import first_fault
 from concio.model.file.tables import Name, Table
+from concio.model.file.values import FileUnits, Length
 from concio.model.motion.records import STANDARD_GRAVITY, read_record
 from concio.model.motion.signals import Pulse, Signal
 from concio.model.stages import ControlPoint
@@ -84,7 +85,7 @@ class MotionPoint(Table):
     """
 
     body: Name
-    at: tuple[float, float] | tuple[float, float, float]
+    at: tuple[Length, Length] | tuple[Length, Length, Length]
     direction: tuple[float, float] | tuple[float, float, float] = (1.0, 0.0)
 
 
@@ -183,7 +184,7 @@ def records_by_axis(
 Motion = Annotated[MotionTable | None, Field(description="ground motion and time stepping; see concio shake")]
 
 
-def motion_table(data: Mapping[str, Any], where: str) -> MotionTable:
+def motion_table(data: Mapping[str, Any], where: str, units: FileUnits | None = None) -> MotionTable:
     """Return the table ``[motion]`` of the tables of a file, checked; an empty one where there is none.
 
     Raises
@@ -192,6 +193,6 @@ def motion_table(data: Mapping[str, Any], where: str) -> MotionTable:
         It holds a key that is not known, or a value that does not fit.
     """
     try:
-        return MotionTable.model_validate(data.get("motion", {}))
+        return MotionTable.model_validate(data.get("motion", {}), context={"units": units or FileUnits()})
     except ValidationError as error:
         raise first_fault(error, data["motion"], MotionTable, f"{where}, [motion]") from None

@@ -2,16 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import fields, replace
 from typing import Annotated, Any, Literal
 
-from pydantic import Discriminator, Field, StrictBool, StrictStr, Tag
+from pydantic import Discriminator, Field, StrictBool, StrictStr, Tag, ValidationInfo, field_validator
 
 from concio.errors import InputError
 from concio.model.crossing import Axle, Vehicle
 from concio.model.file.file_errors import placed
 from concio.model.file.tables import Name, Point, Table, word_or_table
-from concio.model.file.values import Degrees, JointStiffness, Length, Number, Stress, UnitWeight
+from concio.model.file.values import (
+    Degrees,
+    FileUnits,
+    JointStiffness,
+    Length,
+    Number,
+    Stress,
+    UnitWeight,
+    converted,
+    fault,
+    units_of,
+)
 from concio.model.fill import Fill, Layer
 from concio.model.model import Model
 from concio.model.road.earth import with_fill, with_vehicle
@@ -121,7 +133,7 @@ class VehicleTable(Table):
 
     name: Name = "own"
     axles: list[Any] | None = Field(None, description="[place in m, load in kN] each, or tables with at and load")
-    lanes: list[list[Number]] = Field(default_factory=list, description="[from, to, kN per m] each")
+    lanes: list[list[Any]] = Field(default_factory=list, description="[from, to, kN per m] each, or texts with units")
     position: Length | None = None
     footprint: Length | None = None
     width: Length | None = None
@@ -135,6 +147,25 @@ class VehicleTable(Table):
     loaded: list[list[Length]] | None = Field(None, description="[from, to] of uniform load on the road")
     also: list[FollowerTable] = Field(default_factory=list)
     applied: StrictBool = Field(default=False, description="its loads are already in the file")
+
+    @field_validator("axles", "lanes", mode="after")
+    @classmethod
+    def _said(cls, value: list[Any] | None, info: ValidationInfo) -> list[Any] | None:
+        """Refuse bare numbers, which are in m and kN, in a file of another system: either is as likely meant."""
+        if units_of(info) != FileUnits():
+            for k, given in enumerate(value or [], 1):
+                parts = given.values() if isinstance(given, Mapping) else given if isinstance(given, list) else ()
+                bare = next((v for v in parts if isinstance(v, int | float) and v != 0), None)
+                if bare is not None:
+                    what = "axle" if info.field_name == "axles" else "stretch"
+                    msg = f"{what} {k} has a bare number, {bare:g}, and this file is not in kN and m"
+                    form = "[['1.2 m', '100 kN']]" if what == "axle" else "[['0 m', '5 m', '9 kN/m']]"
+                    raise fault(msg, f"write its unit, as in {form}")
+        if info.field_name == "lanes":
+            kinds = ("length", "length", "line load")
+            return [[converted(v, kind, FileUnits()) for v, kind in zip(lane, kinds, strict=False)]
+                    + lane[len(kinds) :] for lane in value or []]  # fmt: skip
+        return value
 
 
 def fill_of(table: FillTable) -> Fill:

@@ -42,14 +42,14 @@ def converted(value: Any, kind: str, units: FileUnits) -> float:
     """
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         what = f"{_shown(value)} is not a number"
-        raise _fault(what, f"write a number in {SYMBOL[kind]}, or a text with a unit")
+        raise fault(what, f"write a number in {SYMBOL[kind]}, or a text with a unit")
     try:
         number = quantity(value, kind)
     except InputError as error:
-        raise _fault(error.what, error.hint) from None
+        raise fault(error.what, error.hint) from None
     if not math.isfinite(number):
         what = f"{value} is not a finite number"
-        raise _fault(what, "give a finite value")
+        raise fault(what, "give a finite value")
     return number * units.factor(kind) if _is_bare(value) else number
 
 
@@ -66,7 +66,8 @@ def _shown(value: Any) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-def _fault(what: str, hint: str | None) -> PydanticCustomError:
+def fault(what: str, hint: str | None) -> PydanticCustomError:
+    """Return the error of a value that is not what a file may say."""
     return PydanticCustomError("concio", "{what}", {"what": what, "hint": hint or ""})
 
 
@@ -98,6 +99,7 @@ Number = Annotated[float, BeforeValidator(_converter("number")), WithJsonSchema(
 Coefficient = Annotated[float, BeforeValidator(_converter("friction")), WithJsonSchema(_schema("friction"))]
 Angle = Annotated[float, BeforeValidator(_converter("angle")), WithJsonSchema(_schema("angle"))]
 Length = Annotated[float, BeforeValidator(_converter("length")), WithJsonSchema(_schema("length"))]
+Area = Annotated[float, BeforeValidator(_converter("area")), WithJsonSchema(_schema("area"))]
 Force = Annotated[float, BeforeValidator(_converter("force")), WithJsonSchema(_schema("force"))]
 Stress = Annotated[float, BeforeValidator(_converter("stress")), WithJsonSchema(_schema("stress"))]
 UnitWeight = Annotated[float, BeforeValidator(_converter("unit weight")), WithJsonSchema(_schema("unit weight"))]
@@ -118,18 +120,18 @@ SMALLEST, LARGEST = 1e-9, 1e7
 def _size(value: float) -> float:
     if value != 0 and not (SMALLEST <= abs(value) <= LARGEST):
         msg = f"{value:g} m is not a size of a structure"
-        raise _fault(msg, f"sizes lie between {SMALLEST:g} and {LARGEST:g} m")
+        raise fault(msg, f"sizes lie between {SMALLEST:g} and {LARGEST:g} m")
     return value
 
 
 def _degrees(value: Any) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float | str):
         what = f"{_shown(value)} is not an angle"
-        raise _fault(what, "write a number of degrees, or a text with a unit")
+        raise fault(what, "write a number of degrees, or a text with a unit")
     try:
         return degrees(value)
     except InputError as error:
-        raise _fault(error.what, error.hint) from None
+        raise fault(error.what, error.hint) from None
 
 
 Degrees = Annotated[
