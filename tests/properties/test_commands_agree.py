@@ -118,7 +118,7 @@ def test_limit_gives_the_answer_of_statics(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "name", spread([n for n in MODELS if "slot" not in n and "arch" not in n and n != "narrow panel"], 0, 2)
+    "name", spread([n for n in MODELS if "slot" not in n and "arch" not in n and n != "narrow panel"], 0, 4)
 )
 def test_push_starts_where_statics_says_that_the_dead_load_stands(name: str, tmp_path: Path) -> None:
     text, _ = MODELS[name]
@@ -129,7 +129,7 @@ def test_push_starts_where_statics_says_that_the_dead_load_stands(name: str, tmp
     assert (found["outcome"] == FAILS) == (dead == FAILS), found
 
 
-@pytest.mark.parametrize("name", spread(list(MODELS), 0, 4))
+@pytest.mark.parametrize("name", spread(list(MODELS), 0, 6))
 def test_every_command_carries_the_same_list_of_what_is_odd(name: str, tmp_path: Path) -> None:
     text = MODELS[name][0].replace("friction = 0.", "friction = 3.", 1)
     path = tmp_path / "model.toml"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -41,11 +42,17 @@ def beside(model: concio.Model, size: float, far: float, first: bool) -> concio.
     return replace(model, bodies=(*more, *model.bodies) if first else (*model.bodies, *more))
 
 
+@cache
+def alone_of() -> concio.Diagnosis:
+    arch, cracks, moves = cracked()
+    return concio.diagnose(arch, cracks, moves, large=False)
+
+
 @settings(max_examples=sample(1, 3, 8), deadline=None)
 @given(st.floats(-2, 2), st.booleans())
 def test_a_block_elsewhere_changes_no_motion_and_no_interval(size: float, first: bool) -> None:
     arch, cracks, moves = cracked()
-    alone = concio.diagnose(arch, cracks, moves, large=False)
+    alone = alone_of()
     both = concio.diagnose(beside(arch, 10.0**size, 300.0, first), cracks, moves, large=False)
     assert both.verdict.status == alone.verdict.status
     assert [c.names for c in both.causes] == [c.names for c in alone.causes]

@@ -112,7 +112,7 @@ def test_named_parts_of_a_random_wall_worsen_nothing(seed: int, way: str | None)
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("seed", range(sample(1, 2, 6)))
+@pytest.mark.parametrize("seed", [3, 0, 1, 2, 4, 5][: sample(1, 1, 6)])
 def test_named_parts_of_a_random_corner_worsen_nothing(seed: int) -> None:
     rng = np.random.default_rng([25, 77, seed])
     courses = int(rng.integers(2, 4))

@@ -19,7 +19,7 @@ from samples import sample
 
 Array = np.ndarray
 BOX = Polyhedron.box("b", (0, 0, 0), (1, 1, 1))
-SEEDS = range(sample(15, 40, 120))
+SEEDS = range(sample(8, 40, 120))
 
 
 def body(name: str, points: Array) -> Body | Polyhedron:

@@ -15,6 +15,7 @@ def test_rows():
     check(hertz.rows())
 
 
+@pytest.mark.long  # the row of the second method
 def test_chords_converge():
     errors = [abs(hertz.half_width(hertz.pressed(n)) / hertz.half_width(hertz.pressed(16)) - 1) for n in (4, 8)]
     assert errors[1] < errors[0]

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 import concio
 from concio.analysis.parameters import parameters_of
 from concio.report.path_page import path_html
-from samples import sample
+from samples import first, sample
 
 STAGES = [concio.Stage("weight", {"dead": 1.0}), concio.Stage("push", {"live": 50.0})]
 
@@ -95,8 +95,10 @@ def test_a_path_that_carries_its_loads_has_none() -> None:
     assert concio.run_path(pillar, [STAGES[0], concio.Stage("push", {"live": 0.1})]).sensitivity() is None
 
 
-@pytest.mark.parametrize(("language", "words"), [("en", "ends in a collapse at the load factor 0.25"),
-                                                 ("it", "termina con un collasso al moltiplicatore 0,25")])  # fmt: skip
+@pytest.mark.parametrize(("language", "words"), first(1, [
+        ("it", "termina con un collasso al moltiplicatore 0,25"),
+        ("en", "ends in a collapse at the load factor 0.25"),
+    ]))  # fmt: skip
 def test_the_report_of_a_path_shows_bars(language: str, words: str) -> None:
     pillar = concio.column(width=0.5, height=2.0, blocks=1, block="rigid", unit_weight=20.0, horizontal=1.0)
     assert words in path_html(followed(pillar), language=language)  # type: ignore[arg-type]

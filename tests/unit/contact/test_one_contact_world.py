@@ -18,6 +18,7 @@ from concio.kinematics.placement import Placement
 from concio.kinematics.rigid import motions, rigid_row, rotation_matrix, swept
 from concio.kinematics.turns import Turns
 from models import box, model_of, weight
+from samples import first
 
 LAWS = (
     0.6,
@@ -51,7 +52,7 @@ def dense(columns, values, unknowns):
 
 @pytest.mark.parametrize("kinds", [("rigid",), ("elastic",), ("rigid", "elastic")])
 @pytest.mark.parametrize("law", range(len(LAWS)))
-@pytest.mark.parametrize("angle", [0.0, 0.7])
+@pytest.mark.parametrize("angle", first(1, [0.7, 0.0]))
 def test_statics_is_the_configuration_at_rest(kinds, law, angle):
     """Every pair of statics is a slot of the search at rest, with the same point, normal, gap, area, law and rows."""
     model = wall(kinds, LAWS[law], angle)

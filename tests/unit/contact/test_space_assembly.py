@@ -157,7 +157,7 @@ PAIRS = {
 }
 
 
-@pytest.mark.parametrize("element", list(SOLID_FAMILIES))
+@pytest.mark.parametrize("element", first(2, list(SOLID_FAMILIES)))
 @pytest.mark.parametrize("name", list(PAIRS))
 def test_a_uniform_stress_passes_through_any_two_meshes(name: str, element: str) -> None:
     """Every component of stress at once, the whole turned: relative displacements and all nodal forces vanish."""

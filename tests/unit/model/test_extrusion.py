@@ -120,6 +120,7 @@ def test_a_rotation_of_the_plane_moves_points_as_in_the_plane() -> None:
         assert np.allclose(along, t2[other, 0] * np.array([a.pairs.tangent[other][0], 0, a.pairs.tangent[other][1]]))
 
 
+@pytest.mark.long  # blocks of one element and rigid ones
 def test_plane_strain_of_elastic_blocks() -> None:
     """With all joints stuck, held faces and the same lines in the plane, nodes move as those of the plane do."""
     plane = concio.wall(length=0.5, height=0.25, block=Elastic(1e5, 0.2, 20.0), plane="strain", horizontal=0.2)

@@ -342,7 +342,7 @@ SMALL = ("drums", "arch_on_piers", "arcade", "blocks_in_space")
 KINDS = (*(pytest.param(kind, marks=pytest.mark.long) for kind in LARGE), *SMALL)
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", first(9, KINDS))
 def test_a_new_file_of_each_is_read_and_checked(kind: str, tmp_path: Path) -> None:
     path = tmp_path / f"{kind}.toml"
     assert run("new", kind, path)[0] == 0

@@ -134,6 +134,7 @@ def test_cohesion_holds_until_it_breaks_for_good():
     assert lasting.multiplier[-1] == pytest.approx(0.3 + 4.0 / W, abs=1e-9)
 
 
+@pytest.mark.long  # the elastic slab and pier
 def test_elastic_pillar_tends_to_the_rigid_one():
     """Moments about the toe leave no choice: what differs is that a soft pillar is a little lower under its weight."""
     found = {}

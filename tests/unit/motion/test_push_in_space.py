@@ -209,6 +209,7 @@ def test_two_blocks_that_stand_apart_are_pushed_each_by_itself():
     assert found.displacement == pytest.approx(alone.displacement, abs=1e-12)
 
 
+@pytest.mark.long  # the extruded and turned pillar
 def test_the_plane_says_the_same_of_a_pillar_through_the_public_door():
     """To what hard joints give way: half as much at twice as many points."""
     flat = concio.push(standing(width=2 * A, height=2 * H))

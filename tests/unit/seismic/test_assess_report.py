@@ -177,6 +177,7 @@ Tc = 0.32
 """
 
 
+@pytest.mark.long  # test_sensitivity and test_coulomb_sensitivity look at the numbers
 def test_the_console_says_what_alpha_0_depends_on_or_why_it_has_no_derivatives(tmp_path: Path) -> None:
     """A block in space: it slides under pressure at alpha_0 = friction, or tips at width over height."""
     path, lines = tmp_path / "wall.toml", {}

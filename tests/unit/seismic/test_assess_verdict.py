@@ -282,6 +282,7 @@ def test_a_parapet_is_not_verified_on_the_ground() -> None:
         assessed(parapet(), elsewhere=["heights"])
 
 
+@pytest.mark.long  # test_out_of_plane
 def test_a_facade_in_elevation_can_leave_its_plane() -> None:
     wide = plain(*strip(1, 1.5, 4.0))
     found = assessed(wide, site=site(hazard=QUIET))

@@ -7,11 +7,13 @@ from pathlib import Path
 import pytest
 
 import concio
+from samples import first
 from seismic_walls import site
 
 
 @pytest.mark.parametrize(
-    ("language", "stands"), [("en", "friction, what stands / b01"), ("it", "attrito, ciò che resta fermo / b01")]
+    ("language", "stands"),
+    first(1, [("it", "attrito, ciò che resta fermo / b01"), ("en", "friction, what stands / b01")]),
 )
 def test_a_block_that_slides_on_what_stands(tmp_path: Path, language: str, stands: str) -> None:
     block = concio.column(width=1.0, height=1.0, blocks=1, block="rigid", friction=0.3)

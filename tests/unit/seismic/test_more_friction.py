@@ -34,7 +34,7 @@ def assessed(friction: float) -> Assessment:
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("times", sample([1.2], [1.2, 1.35], [1.1, 1.2, 1.35, 1.5]))
+@pytest.mark.parametrize("times", sample([1.2], [1.2], [1.1, 1.2, 1.35, 1.5]))
 def test_more_friction_never_lowers_the_headline_of_the_corner(times: float) -> None:
     """With 1.2 times the friction zeta_E fell by 15 %: a curve ended at 5 cm where a contact only touched."""
     assert assessed(0.6 * times).zeta >= assessed(0.6).zeta * (1 - 1e-6)

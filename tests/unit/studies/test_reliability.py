@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.special import ndtr
 
@@ -14,10 +14,12 @@ import concio
 from concio.errors import InputError, SolverError
 from concio.studies.distributions import Distribution
 from concio.studies.reliability import multiplier_over
+from samples import sample
 
 SIZES = st.floats(0.2, 5.0)
 
 
+@settings(max_examples=sample(30, 100), deadline=None)
 @given(st.lists(SIZES, min_size=2, max_size=5), st.lists(SIZES, min_size=5, max_size=5), st.floats(-6.0, 9.0))
 def test_a_linear_limit_state_of_normal_variables_is_exact(sds: list[float], factors: list[float], c: float) -> None:
     variables = [concio.variable(f"x{k}", "normal", mean=1.0 + k, sd=sd) for k, sd in enumerate(sds)]
@@ -34,6 +36,7 @@ def test_a_linear_limit_state_of_normal_variables_is_exact(sds: list[float], fac
 
 
 @pytest.mark.long
+@settings(max_examples=sample(20, 40, 100), deadline=None)
 @given(st.floats(0.05, 0.6), st.floats(0.05, 0.6), st.floats(0.3, 8.0))
 def test_resistance_over_load_both_lognormal_is_exact(of_r: float, of_s: float, ratio: float) -> None:
     r = concio.variable("r", "lognormal", median=ratio, beta=of_r)
@@ -96,6 +99,7 @@ def test_a_structure_that_fails_at_the_medians_has_a_negative_index() -> None:
     assert found.direction["x"] == pytest.approx(1.0)
 
 
+@settings(max_examples=sample(30, 100), deadline=None)
 @given(st.floats(-7.0, 7.0))
 def test_standard_numbers_stand_for_values_in_both_tails(u: float) -> None:
     for made in (Distribution("normal", {"mean": 3.0, "sd": 2.0}), Distribution("gumbel", {"mean": 3.0, "sd": 2.0}),

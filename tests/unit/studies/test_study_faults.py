@@ -95,6 +95,7 @@ def test_a_lost_worker_loses_no_row(executor: str, tmp_path: Path, monkeypatch: 
     assert found.values("multiplier").tolist() == [0.3, 0.3, 0.3, 0.25, 0.3]
 
 
+@pytest.mark.long  # rows are the same whatever the executor
 def test_the_processes_of_a_pool_start_together() -> None:
     """One after the other, as many starts as there are workers passed before they all worked."""
     pool = executors._processes(2)

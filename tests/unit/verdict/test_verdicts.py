@@ -18,6 +18,7 @@ from concio.problem.solution import Status
 from concio.verdict.limit_words import limit_lines
 from models import box, model_of, on_ground, weight
 from rigid_walls import BLOCK, FERRIS_TIN_LOI, MU
+from samples import first
 
 
 def between_walls(height, friction, **options):
@@ -62,7 +63,7 @@ STONE = {"kind": "rigid", "material": "stone"}
 HELD = {"rigid": STONE, "elastic": {"kind": "elastic", "material": "block"}}
 
 
-@pytest.mark.parametrize("kind", HELD)
+@pytest.mark.parametrize("kind", first(1, HELD))
 def test_self_stress_alone_holds_nothing(kind):
     """One block between two vertical faces with friction, no prestress: it falls, rigid or elastic, and says why."""
     result = concio.solve(between_walls(0.5, 0.5, **HELD[kind]), on_failure="return")
