@@ -59,7 +59,8 @@ class Reliability:
     direction : dict of str to float
         Change of the index per standard deviation of each variable: positive ones add to the safety.
     limit_state : float
-        Its value at the design point, relative to that at the medians.
+        Its value at the design point, relative to that at the medians or to its change over one standard deviation,
+        whichever is larger.
     evaluations : int
         Of the limit state.
 
@@ -134,7 +135,7 @@ def reliability(limit_state: LimitState, variables: Sequence[Variable], *, most:
     search = _Search(limit_state, variables)
     u = np.zeros(len(search.names))
     g, slope = search.at(u)
-    first, weight = abs(g) or 1.0, 0.0
+    first, weight = max(abs(g), float(np.linalg.norm(slope))) or 1.0, 0.0  # g may be zero to rounding from the start
     for _ in range(most):
         size = float(np.linalg.norm(slope))
         if not size > 0 or not math.isfinite(size):
