@@ -170,6 +170,7 @@ def check_column_of_drums(found):
 
 
 def check_dome_under_shaking(found):
+    assert found["rests"]
     assert found["opening"] > 0.01
     assert found["worst"] <= 1e-9
     assert found["energy"] <= 1e-9

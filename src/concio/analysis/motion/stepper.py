@@ -180,6 +180,7 @@ class Stepper:
             states.normal[k:] = ties.states()
         t0 = np.zeros((count, problem.dim))
         t0[:m] = memory.force
+        self.solver.begin()
         found = self.solver.step(problem, states, self._guess(state, x0, h), t0)
         returned: Returned | None = None
         change = np.inf
@@ -198,6 +199,7 @@ class Stepper:
             problem, inner = replace(problem, b=problem.b + again - inner), again
             if not joint.impact:
                 found = self.solver.step_again(problem, found)
+        found = replace(found, how=self.solver.solved_by)
         theta = self.scheme.theta
         x = theta * found.x + (1 - theta) * x0
         y = relative(rows.columns, rows.values, x) + rows.imposed

@@ -30,15 +30,24 @@ LARGE = 500
 FLIPS = 6
 """Times all pairs that violate their law change state together before a small problem settles them."""
 
+MEANS = ("", "same states", "active set", "small problem", "interior point", "pivoting", "softer joints")
+"""What solves a step, each where those before it do not."""
+
 
 class StepSolver:
-    """Solves steps of one layout; keeps pattern, ordering and counts.
+    """Solves steps of one layout; keeps pattern and ordering.
 
     Parameters
     ----------
     engine : {"superlu", "pardiso"}, optional
     large : float
         Unknowns from which on, in space, one factorisation does for a step where it can.
+
+    Attributes
+    ----------
+    solved_by : str
+        Last of the means that were needed since :meth:`begin`: a step with impacts, or whose forces turn, is solved
+        several times.
     """
 
     def __init__(self, engine: Engine = "superlu", *, large: float = np.inf) -> None:
@@ -47,7 +56,11 @@ class StepSolver:
         self._linear: LinearStep | None = None
         self._pairs: ActivePairs | None = None
         self._one: OneFactor | None = None
-        self.counts: dict[str, int] = {}
+        self.solved_by = ""
+
+    def begin(self) -> None:
+        """Begin with a step of time."""
+        self.solved_by = ""
 
     def new_layout(self) -> None:
         """Forget the pattern: the rows meet other unknowns from now on."""
@@ -74,17 +87,20 @@ class StepSolver:
         again = self.step(p, found.states, found.x, found.t)
         return replace(again, factorisations=found.factorisations + again.factorisations)
 
-    def step(self, p: StepProblem, states: PairStates, x: Array, t: Array, *, polish: bool = True) -> StepSolution:
+    def step(self, p: StepProblem, states: PairStates, x: Array, t: Array) -> StepSolution:
         """Solve a step from the states of the one before and a point near the answer.
 
-        In space the interior point ends where Newton's method in the states it found does the rest (``polish``).
+        In space the interior point ends where Newton's method in the states it found does the rest; what neither
+        solves goes through softer joints.
         """
         pairs = self._take(p)
-        found = self._step(pairs.part, pairs.states(states), x, pairs.forces(t))
-        if p.dim == 3 and found.how == "interior point" and found.residual >= STEP_SETTLED and polish:
-            again = pairs.of_all(found)
-            return self.step(p, again.states, again.x, again.t, polish=False)
-        return self._count(pairs.of_all(found))
+        part, own = pairs.part, pairs.forces(t)
+        found = self._step(part, pairs.states(states), x, own)
+        if p.dim == 3 and found.how == "interior point" and found.residual >= STEP_SETTLED:
+            found = self._step(part, found.states, found.x, found.t)
+        if p.dim == 3 and found.residual >= STEP_SETTLED:
+            found = by_softer_joints(part, found, x, own, self._again)
+        return self._told(pairs.of_all(found))
 
     def _take(self, p: StepProblem) -> ActivePairs:
         """Return the active pairs of a problem, whose rows the factors to come have."""
@@ -107,10 +123,6 @@ class StepSolver:
         found = self._rounds(p, states, x, t)
         if found is not None and found.residual < STEP_SETTLED:
             return found
-        if p.dim == 3 and found is not None:
-            found = by_softer_joints(p, found, x, t, self._again)
-            if found.residual < STEP_SETTLED:
-                return found
         return self._fallback(p, found)
 
     def _again(self, p: StepProblem, at: StepSolution) -> StepSolution:
@@ -174,8 +186,8 @@ class StepSolver:
         self.factor.factorise(laws_of_step(part, pairs.states(states), turn).blocks())
         return self.factor.solve(f)
 
-    def _count(self, found: StepSolution) -> StepSolution:
-        self.counts[found.how] = self.counts.get(found.how, 0) + 1
+    def _told(self, found: StepSolution) -> StepSolution:
+        self.solved_by = max(self.solved_by, found.how, key=MEANS.index)
         return found
 
     def _fallback(self, p: StepProblem, best: StepSolution | None) -> StepSolution:
@@ -187,7 +199,7 @@ class StepSolver:
             return found
         nearest = found if best is None or found.residual < best.residual else best
         if p.dim == 3:
-            return found if best is None or found.residual < best.residual else best
+            return nearest
         answer = sparse_lemke.solve(problem, start_states=nearest.states[pick], tries=0, limit=STEP_PIVOTS * len(pick))
         found = self._read(p, pick, answer.displacement, answer.normal_force, answer.friction_force, "pivoting")
         return found if found.residual < nearest.residual else nearest
