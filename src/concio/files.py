@@ -88,6 +88,9 @@ def read_text(
     except UnicodeDecodeError as error:
         if latin:
             return raw.decode("latin-1").replace("\r\n", "\n")
+        if b"\0" in raw:
+            msg = "it is not a text: it holds bytes that no text has"
+            raise InputError(msg, where=where, hint=hint) from None
         line = raw[: error.start].count(b"\n") + 1
         msg = f"byte {error.start} (line {line}) is not UTF-8"
         raise InputError(msg, where=where, hint="save the file with the encoding UTF-8") from None

@@ -58,6 +58,20 @@ def test_a_controlled_stage_holds_only_where_its_load_was_reached(seed):
 
 
 @pytest.mark.parametrize("seed", SEEDS)
+def test_a_motion_too_far_for_small_displacements_is_told(seed):
+    """A pillar whose top moves by a share of its height opens its foot by that share of its width."""
+    rng = np.random.default_rng(seed)
+    b, h = rng.uniform(0.2, 1.0), rng.uniform(1.0, 3.0)
+    for share, far in ((rng.uniform(0.01, 0.099), False), (rng.uniform(0.101, 0.3), True)):
+        found = run_path(pillar(b, h), [DEAD, push(b / h, b, h, until=share * h)])
+        (load,) = found.group_loads()
+        assert load.most == pytest.approx(b / h, rel=1e-6)
+        told = [line for line in found.verdict.limits if "too far for small displacements" in line]
+        assert len(told) == far
+        assert not far or f"by {1e3 * share * b:.4g} mm, {100 * share:.3g} % of its length" in told[0]
+
+
+@pytest.mark.parametrize("seed", SEEDS)
 def test_what_is_pushed_away_from_its_load_is_told(seed):
     """The point is pulled to the other side: the load that goes with it has the other sign."""
     rng = np.random.default_rng(seed)

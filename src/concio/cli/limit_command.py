@@ -88,20 +88,20 @@ def limit(
             say(line)
         flush()
 
+    known_lines: list[str] = []
     try:
         with progress_bar(shown=not json) as progress:
             stages = limit_stages(
                 assembly, groups, path=path, steps=steps, search=search, friction=wanted, progress=progress
             )
-            known_lines: list[str] = []
             for name, known in stages:
                 found = known
                 latest = stage_lines(name, known)
                 known_lines += latest
                 found_so_far(known_lines, latest, shown=not json)
     except KeyboardInterrupt:
-        if found is not None:
-            tell(limit_lines(found))
+        if known_lines:
+            tell(["Stopped: found until then, without a verdict:", *known_lines])
         raise
     assert found is not None  # the bound comes first, or an error
     verdict = found.verdict

@@ -27,6 +27,8 @@ SELDOM = 10.0
 """Seconds between lines about the progress where standard error is not a terminal."""
 SOON = 5.0
 """Seconds after which the time left is reported."""
+ENOUGH = 0.01
+"""Share of the work after which it is: what a path does first, many events at small loads, says nothing of the rest."""
 
 
 SHARES = ("dynamics", "push", "assessment", "diagnose", "path")
@@ -162,12 +164,12 @@ class TimeLeft:
     def seconds(self, share: float, now: float) -> float | None:
         """Return the time left [s] when ``share`` of the work (0 to 1) is done at the time ``now`` [s].
 
-        None while nothing is known, before :data:`SOON`, and when the bar is full.
+        None while less than :data:`ENOUGH` is known, before :data:`SOON`, and when the bar is full.
         """
         if self.begun is None:
             self.begun = share, now
         gained, passed = share - self.begun[0], now - self.begun[1]
-        if not gained > 0 or share >= 1 or passed < SOON:
+        if gained < ENOUGH or share >= 1 or passed < SOON:
             return None
         return passed / gained * (1 - share)
 

@@ -43,7 +43,8 @@ EN = {
     "{gap}; no collapse state of Coulomb friction was found.",
     "sought": "searches made: {sought}, of which {named} of named mechanisms and {parts} in other parts of the "
     "structure: above levels at which blocks meet ({levels}), beside lines of openings ({openings}), at faces of "
-    "returns and cross walls ({returns}), beyond other lines at which it changes ({changes}); followed: {followed}; "
+    "returns and cross walls ({returns}), beyond other lines at which it changes ({changes}), where places that part "
+    "the same blocks from the rest need one search; followed: {followed}; "
     "the others begin to move only at accelerations beyond those of these",
     "left_out": "sought at {sought} of {there} {what}: the structure is too large for all; name parts of it to seek "
     "more",
@@ -156,7 +157,8 @@ IT = {
     "sought": "ricerche fatte: {sought}, di cui {named} di meccanismi con nome e {parts} in altre parti della "
     "struttura: sopra le quote in cui i blocchi si incontrano ({levels}), accanto alle linee delle aperture "
     "({openings}), alle facce di risvolti e muri di spina ({returns}), oltre altre linee in cui la struttura cambia "
-    "({changes}); {followed} meccanismi sono stati seguiti, gli altri si muovono solo ad accelerazioni oltre le loro",
+    "({changes}), con una sola ricerca per i punti che separano gli stessi blocchi dal resto; {followed} meccanismi "
+    "sono stati seguiti, gli altri si muovono solo ad accelerazioni oltre le loro",
     "left_out": "cercato in {sought} di {there} {what}: la struttura è troppo grande per tutte; per cercare altrove "
     "nominarne le parti",
     "what_levels": "quote",

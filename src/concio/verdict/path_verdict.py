@@ -251,9 +251,19 @@ def _limits(found: PathResult) -> tuple[str, ...]:
     lines += story(found)
     if found.broken_ties:
         lines.append(SUDDEN)
+    lines += _far(found)
     if bool((found.assembly.laws.friction > 0).any()):
         lines.append(HISTORY)
     return (*lines, QUASI_STATIC)
+
+
+def _far(found: PathResult) -> tuple[str, ...]:
+    """Return a sentence on the joint that moved most at the ends of stages, where that is too far."""
+    ends = {step.stage: k for k, step in enumerate(found.steps)}
+    moved = max((found.result(k).joint_motion for k in ends.values()), key=lambda m: m.share, default=None)
+    if moved is None or not moved.large:
+        return ()
+    return (f"{moved.sentence}; 'push' and 'shake' follow structures that have moved that far",)
 
 
 def _beyond(load: GroupLoad) -> str:

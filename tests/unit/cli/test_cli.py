@@ -370,6 +370,22 @@ def test_accidents(panel: Path, monkeypatch: pytest.MonkeyPatch, error: BaseExce
     assert "Traceback" not in err
 
 
+def test_a_limit_that_is_stopped_shows_what_was_found_and_no_verdict(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def stop(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    file = tmp_path / "column.toml"
+    text = '[column]\nwidth = 0.4\nheight = 1.6\nblocks = 4\nblock = "rigid"\nhorizontal = 1.0\n'
+    file.write_text(text, encoding="utf-8")
+    monkeypatch.setattr("concio.analysis.limit.smallest_friction", stop)
+    code, out, err = run("limit", file)
+    assert (code, "stopped on request" in err) == (130, True)
+    assert out.startswith("Stopped: found until then, without a verdict:\n  associated bound     0.25 ")
+    assert "by default" not in out
+
+
 @pytest.mark.usefixtures("blank_figures")
 def test_a_full_disk_leaves_what_was_there(panel: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert run("run", panel, "--out", "result", "--no-figures")[0] == 0
@@ -433,6 +449,7 @@ def test_the_bar_tells_the_time_left_of_long_runs() -> None:
     left = TimeLeft()
     assert left.after(0.0, 100.0) == ""  # nothing known
     assert left.after(0.1, 102.0) == ""  # too soon to tell
+    assert left.after(0.009, 120.0) == ""  # too little to tell
     assert left.after(0.25, 120.0) == ", about 60 s left"
     assert left.after(0.5, 400.0) == ", about 5 min left"
     assert left.after(0.5, 100.0 + 7200.0) == ", about 2.0 h left"

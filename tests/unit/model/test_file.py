@@ -401,6 +401,9 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
     (tmp_path / "latin.toml").write_bytes("title = 'x'\n# größe".encode("latin-1"))
     with pytest.raises(InputError, match=r"byte 16 \(line 2\) is not UTF-8"):
         concio.load(tmp_path / "latin.toml")
+    (tmp_path / "picture.png").write_bytes(b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR")
+    with pytest.raises(InputError, match="it is not a text"):
+        concio.load(tmp_path / "picture.png")
     (tmp_path / "bom.toml").write_bytes("﻿[panel]\r\ncourses = 1\r\n".encode())
     assert len(concio.load(tmp_path / "bom.toml").free_bodies) == 3
     with (tmp_path / "huge.toml").open("wb") as huge:
