@@ -21,7 +21,8 @@ from functools import cached_property
 
 import numpy as np
 
-from concio.analysis.seismic.macro_blocks import GROUND, MacroJoint, Mechanics
+from concio.analysis.seismic.macro_blocks import MacroJoint, Mechanics
+from concio.analysis.seismic.sliding_faces import GROUND
 from concio.kinematics.frames import turned, turned_left
 from concio.model.model import Tie
 
@@ -171,13 +172,23 @@ class Linkage:
         end = joint.point if joint.end is None else joint.end
         return self.between(q, joint.a, joint.point, joint.b, end)
 
+    def joints(self, q: Array) -> tuple[MacroJoint, ...]:
+        """Return the joints with rollers at the ends of what touches: contact goes no further than either face."""
+        found = []
+        for joint in self.mechanics.joints:
+            if joint.kind == "roller" and not joint.pulls:
+                along = float(self.apart(q, joint) @ turned_left(self.normal(q, joint)))
+                joint = joint.slid(-along if joint.face else along, CLOSED * self.size)
+            found.append(joint)
+        return tuple(found)
+
     # -- conditions ---------------------------------------------------------------------------------------------------
 
     def conditions(self, q: Array) -> tuple[Array, Array]:
         """Return the residuals (c,) [m] of all joints and their derivatives (c, 3 G)."""
         values: list[float] = []
         rows: list[Array] = []
-        for joint in self.mechanics.joints:
+        for joint in self.joints(q):
             apart = self.apart(q, joint)
             if joint.kind == "hinge":
                 values += apart.tolist()
@@ -298,7 +309,7 @@ class Linkage:
         first: list[int] = []
         fixed = np.zeros(self.unknowns)
         pushing: list[int] = []
-        for joint in self.mechanics.joints:
+        for joint in self.joints(q):
             first.append(len(columns))
             if joint.kind == "hinge":
                 for axis in (joint.normal, turned_left(joint.normal)):

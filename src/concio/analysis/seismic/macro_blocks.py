@@ -17,6 +17,7 @@ from typing import Literal
 
 import numpy as np
 
+from concio.analysis.seismic.sliding_faces import GROUND, ends_of_sliding, face_ends, face_of
 from concio.contact.assembly import Assembly
 from concio.fem.discretisation import FIXED, RIGID
 from concio.kinematics.frames import turned_left
@@ -24,9 +25,6 @@ from concio.kinematics.rigid import motions, rigid_operator, swept
 from concio.problem.tolerances import AT_BOUND
 
 Array = np.ndarray
-
-GROUND = -1
-"""Number of the macro-block that does not move."""
 
 STILL = {2: 1e-7, 3: 1e-6}
 """Relative velocities below this share of the largest are none; in space they come from cone programmes."""
@@ -78,6 +76,8 @@ class MacroJoint:
         Whether the face of a roller belongs to ``a`` or to ``b``.
     end : (d,) array
         The end of a bar on ``b`` [m].
+    low, high : float
+        Where the face of a roller begins and ends, from the point along its normal turned left [m].
     friction, cohesion : float
         mu, and c [kN], of what slides.
     pulls : bool
@@ -97,12 +97,21 @@ class MacroJoint:
     normal: Array
     face: int = 0
     end: Array | None = None
+    low: float = -float("inf")
+    high: float = float("inf")
     friction: float = 0.0
     cohesion: float = 0.0
     pulls: bool = False
     set_back: float = 0.0
     strength: float = float("inf")
     inward: Array | None = None
+
+    def slid(self, by: float, tolerance: float) -> MacroJoint:
+        """Return a roller whose point has gone ``by`` [m] along its face: beyond its end, that end is what touches."""
+        if self.low - tolerance <= by <= self.high + tolerance:
+            return self
+        end = self.point + min(max(by, self.low), self.high) * turned_left(self.normal)
+        return replace(self, point=end, face=1 - self.face, low=-float("inf"), high=float("inf"))
 
     def set_back_by(self, force: float) -> MacroJoint:
         """Return the joint with its hinge in the middle of the length that ``force`` [kN] crushes."""
@@ -205,7 +214,12 @@ def mechanics_of(assembly: Assembly, velocity: Array, normal_force: Array) -> Me
     for a, b in sorted({(int(across[k]), int(beyond[k])) for k in active if crushing[k]}):
         own = active[(across[active] == a) & (beyond[active] == b) & crushing[active]]
         joints += _set_back(assembly, blocks, own, a, b, normal_force, top)
-    for k in active[~crushing[active]]:
+    macro = np.array([of_body.get(i, GROUND) for i in range(len(motion))])
+    single, cohesion = active[~crushing[active]], assembly.laws.cohesion
+    if d == 2:
+        stays = (np.abs(pairs.C_n @ velocity) <= still) & ~crushing
+        single, cohesion = ends_of_sliding(assembly, macro, single, stays & (speed > still))
+    for k in single:
         a, b = int(across[k]), int(beyond[k])
         if pairs.interface[k] < 0:
             tie = disc.model.ties[int(np.flatnonzero(np.flatnonzero(pairs.interface < 0) == k)[0])]
@@ -219,10 +233,11 @@ def mechanics_of(assembly: Assembly, velocity: Array, normal_force: Array) -> Me
         else:
             law = assembly.laws
             face = face_of(assembly, int(k))
+            ends = face_ends(assembly, macro, int(k), face) if d == 2 else (-np.inf, np.inf)
             joints.append(
                 MacroJoint(
-                    "roller", a, b, pairs.point[k], pairs.normal[k], face,
-                    friction=float(law.friction[k]), cohesion=float(law.cohesion[k]),
+                    "roller", a, b, pairs.point[k], pairs.normal[k], face, low=ends[0], high=ends[1],
+                    friction=float(law.friction[k]), cohesion=float(cohesion[k]),
                 )
             )  # fmt: skip
     joints += _supports(assembly, of_body)
@@ -257,19 +272,6 @@ def _grouped(assembly: Assembly, motion: Array, top: float) -> dict[int, int]:
             parent[root(a)] = root(b)
     roots: dict[int, int] = {}
     return {b: roots.setdefault(root(b), len(roots)) for b in moving}
-
-
-def face_of(assembly: Assembly, k: int) -> int:
-    """Return 0 where the point of a pair is a corner of its side b, so that the face is that of a; else 1."""
-    corners = [
-        float(
-            np.linalg.norm(
-                np.asarray(assembly.model.bodies[int(side[k])].vertices) - assembly.pairs.point[k], axis=1
-            ).min()
-        )
-        for side in (assembly.pairs.body_a, assembly.pairs.body_b)
-    ]
-    return 0 if corners[1] <= corners[0] else 1
 
 
 def _set_back(

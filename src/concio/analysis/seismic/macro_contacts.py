@@ -8,7 +8,8 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.analysis.seismic.linkage import Force
-from concio.analysis.seismic.macro_blocks import GROUND, Mechanics, face_of
+from concio.analysis.seismic.macro_blocks import Mechanics
+from concio.analysis.seismic.sliding_faces import GROUND, face_ends, face_of
 from concio.contact.assembly import Assembly
 from concio.contact.face_points import FacePoints, Standing, Stated
 from concio.contact.separate import surroundings
@@ -31,12 +32,15 @@ def contacts_of(assembly: Assembly, mechanics: Mechanics, normal_force: Array) -
     """
     pairs, bodies, d = assembly.pairs, assembly.model.bodies, assembly.model.dim
     size = surroundings(assembly.model).of(list(mechanics.of_body))
-    a = np.array([mechanics.of_body.get(int(i), GROUND) for i in pairs.body_a])
-    b = np.array([mechanics.of_body.get(int(i), GROUND) for i in pairs.body_b])
+    macro = np.array([mechanics.of_body.get(i, GROUND) for i in range(len(bodies))])
+    a, b = macro[pairs.body_a], macro[pairs.body_b]
     own = np.flatnonzero((a != b) & (pairs.interface >= 0) & (pairs.gap <= 1e-6 * size))
     face = np.array([face_of(assembly, int(k)) for k in own], dtype=int)
     low, high = np.full((len(own), d - 1), -np.inf), np.full((len(own), d - 1), np.inf)
     for i, k in enumerate(own):
+        if d == 2:
+            low[i], high[i] = face_ends(assembly, macro, int(k), int(face[i]))
+            continue
         body = bodies[int(pairs.body_b[k] if face[i] else pairs.body_a[k])]
         arm = np.asarray(body.vertices) - pairs.point[k]
         arm = arm[np.abs(arm @ pairs.normal[k]) <= 1e-5 * size]

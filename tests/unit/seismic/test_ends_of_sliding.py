@@ -1,0 +1,82 @@
+"""What slides on a wall is carried as far as faces reach, whatever the order of the blocks in the file."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import concio
+from concio import Body, JointLaw, Load, Model, Rigid, Site
+from concio.analysis.seismic.local_mechanism import LocalMechanism
+from samples import sample
+
+SITE = Site(hazard={"SLV": {"a_g": 0.2, "F0": 2.45, "Tc": 0.32}})
+
+
+def boxes(sizes: dict[str, tuple[float, float, float, float]]) -> tuple[Body, ...]:
+    """Return rectangles from x0, x1, y0, y1; the one called "ground" is fixed."""
+    return tuple(
+        Body(name, np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]]), kind="fixed" if name == "ground" else "rigid")
+        for name, (x0, x1, y0, y1) in sizes.items()
+    )
+
+
+def slides(bodies: tuple[Body, ...], friction: float, way: str) -> LocalMechanism:
+    """Return the mechanism in which the block called "top" slides alone."""
+    model = Model(
+        bodies, {"block": Rigid(unit_weight=20.0)}, {"joint": JointLaw(friction=friction)},
+        loads=(Load("weight", (0.0, -1.0)),),
+    )  # fmt: skip
+    found = concio.assess(model, site=SITE, direction=way, mechanisms={"top": ["top"]})
+    own = next(m for m in (*found.mechanisms, *found.others) if m.name == "top")
+    assert own.multiplier == pytest.approx(friction, rel=1e-6)
+    return own
+
+
+@pytest.mark.parametrize("seed", range(sample(4, 24)))
+def test_a_block_slides_until_its_resultant_comes_to_the_edge_of_the_wall(seed: int) -> None:
+    """A low block on a wall, flush with it, set back or beyond it: H = mu W acts at half of its height."""
+    rng = np.random.default_rng([44, seed])
+    low, high = -0.3, 0.3
+    left, right = (float(rng.choice([0.0, 0.0, -0.05, 0.08])) for _ in range(2))
+    b0, b1 = low + left, high - right
+    height, friction = float(rng.uniform(0.2, 0.6)), float(rng.uniform(0.1, 0.4))
+    wall = {"one": (low, high, 0.0, 1.0)} if rng.random() < 0.5 else {
+        "one": (low, 0.1, 0.0, 1.0), "two": (0.1, high, 0.0, 1.0),
+    }  # fmt: skip
+    bodies = list(boxes({"ground": (-2.0, 2.0, -0.5, 0.0), **wall, "top": (b0, b1, 1.0, 1.0 + height)}))
+    rng.shuffle(bodies)
+    way = str(rng.choice(["left", "right"]))
+    side = 1.0 if way == "right" else -1.0
+    resultant = (b0 + b1) / 2 + side * friction * height / 2
+    edge = high if way == "right" else low
+    own = slides(tuple(bodies), friction, way)
+    assert own.followed.reason == "joint opens"
+    assert own.followed.end == pytest.approx(side * (edge - resultant), abs=1e-5)
+
+
+@pytest.mark.parametrize("seed", range(sample(2, 10)))
+def test_the_order_of_the_blocks_changes_no_assessment(seed: int) -> None:
+    """A wall of courses that slide on each other, with floors and a tie: some of its curves end at an edge."""
+    rng = np.random.default_rng([45, seed])
+    heights = rng.choice([0.5, 0.8, 1.0], size=int(rng.integers(3, 6)))
+    floors = np.concatenate([[0.0], np.cumsum(heights)])
+    sizes = {f"c{k}": (0.0, 0.6, float(floors[k]), float(floors[k + 1])) for k in range(len(heights))}
+    last, top = f"c{len(heights) - 1}", float(floors[-1])
+    loads = (Load("weight", (0.0, -1.0)), Load("point", (float(-rng.uniform(0, 1)), -4.0), (last,), at=(0.3, top)))
+    tie = concio.Tie(
+        "tie", body_a=last, at_a=(0.3, top - 0.2), body_b="", at_b=(5.0, top - 0.2), stiffness=1e4,
+        yield_force=float(rng.uniform(0.2, 3.0)),
+    )  # fmt: skip
+    model = Model(
+        boxes({"ground": (-1.0, 2.0, -0.5, 0.0), **sizes}), {"block": Rigid(unit_weight=19.0)},
+        {"joint": JointLaw(friction=float(rng.uniform(0.25, 0.45)))}, loads=loads, ties=(tie,),
+    )  # fmt: skip
+    alone = concio.assess(model, site=SITE, direction="both")
+    shuffled = list(model.bodies)
+    rng.shuffle(shuffled)
+    other = concio.assess(replace(model, bodies=tuple(shuffled)), site=SITE, direction="both")
+    assert other.verdict.outcome is alone.verdict.outcome
+    assert other.zeta == pytest.approx(alone.zeta, rel=1e-6)
