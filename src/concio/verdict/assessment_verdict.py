@@ -265,6 +265,8 @@ class _Words:
             bodies = "; ".join(b.label for b in worst.mechanics.blocks[:MOST_NAMES])
             key = "part" if worst.name == "weakest of all" else "part_decides"
             limits.append(self.say(key, bodies=bodies, name=self.name(worst.name)))
+        if worst is not None and self.slides_alike(worst):
+            limits.append(self.say("alike", name=self.name(worst.name)))
         limits += [self.say("brittle", tie=t.name, force=t.strength) for t in found.model.ties if t.strength < t.most
                    and t.yield_force is not None]  # fmt: skip
         apart = [
@@ -289,6 +291,17 @@ class _Words:
         if excused:
             limits.append(self.say("elsewhere", items=", ".join(excused)))
         return tuple(limits)
+
+    def slides_alike(self, worst: LocalMechanism) -> bool:
+        """Return whether other blocks slide from the multiplier of a mechanism that slides on, and fare otherwise."""
+        if not worst.mechanics.slides:
+            return False
+        return any(
+            m.mechanics.slides and m.direction == worst.direction
+            and math.isclose(m.multiplier, worst.multiplier, rel_tol=1e-6)
+            and not math.isclose(m.least, worst.least, rel_tol=1e-6)
+            for m in (*self.found.mechanisms, *self.found.others)
+        )  # fmt: skip
 
     def strips(self) -> str:
         """Return how a facade was searched out of its plane."""

@@ -56,6 +56,8 @@ EN = {
     "at a larger multiplier",
     "part_decides": "the mechanism that decides, '{name}', is one in which only some blocks move, {bodies}; all "
     "motions were searched as well",
+    "alike": "other blocks slide at the same alpha_0 as '{name}', with another zeta_E: parts of many shapes do, and "
+    "which of them a search meets depends on the order of the blocks in the file; name the parts that matter",
     "brittle": "tie '{tie}' breaks before it yields: its force at break, {force} kN, is used instead of its yield "
     "force",
     "corner": "'{name}', {level}: zeta_E = {zeta} is a ratio of accelerations, capacity over demand in "
@@ -169,6 +171,9 @@ IT = {
     "moti finiva a un moltiplicatore maggiore",
     "part_decides": "il meccanismo che decide, «{name}», è uno in cui si muovono solo alcuni blocchi, {bodies}; anche "
     "tutti i moti sono stati esaminati",
+    "alike": "altri blocchi scorrono allo stesso alpha_0 di «{name}», con un altro zeta_E: lo fanno parti di molte "
+    "forme, e quale di esse una ricerca incontra dipende dall'ordine dei blocchi nel file; indicare "
+    "le parti che contano",
     "brittle": "la catena «{tie}» si rompe prima di snervarsi: si considera la forza alla rottura, {force} kN, non "
     "quella di snervamento",
     "corner": "«{name}», {level}: zeta_E = {zeta} è un rapporto di accelerazioni, capacità su domanda in "

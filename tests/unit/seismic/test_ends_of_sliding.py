@@ -80,3 +80,16 @@ def test_the_order_of_the_blocks_changes_no_assessment(seed: int) -> None:
     other = concio.assess(replace(model, bodies=tuple(shuffled)), site=SITE, direction="both")
     assert other.verdict.outcome is alone.verdict.outcome
     assert other.zeta == pytest.approx(alone.zeta, rel=1e-6)
+
+
+def test_parts_that_slide_at_one_multiplier_are_told() -> None:
+    """Above every bed joint of a wall in bond parts of many shapes slide at mu W; a single block has no other part."""
+    wall = concio.wall(length=1.5, height=1.25, block_size=(0.5, 0.25), block="rigid", unit_weight=18.0, friction=0.4,
+                       thickness=2.0)  # fmt: skip
+    found = concio.assess(wall, site=SITE, direction="left", levels=["SLV"])
+    assert found.worst is not None
+    assert found.worst.multiplier == pytest.approx(0.4)
+    assert any("slide at the same alpha_0" in line for line in found.verdict.limits)
+    box = replace(wall, bodies=boxes({"ground": (-1.0, 2.0, -0.5, 0.0), "one": (0.0, 1.0, 0.0, 0.5)}))
+    alone = concio.assess(box, site=SITE, direction="left", levels=["SLV"])
+    assert not any("slide at the same alpha_0" in line for line in alone.verdict.limits)
