@@ -141,6 +141,20 @@ def test_vehicles_carry_their_sources_and_convoys_add_up() -> None:
     assert left.footprints(5.0)[0][0] == 4.0
 
 
+def test_each_vehicle_of_a_convoy_keeps_its_own_factors() -> None:
+    """A convoy has the factors of its first vehicle; what each axle presses with is what it pressed with alone."""
+    first = Vehicle("first", (Axle(0.0, 60.0), Axle(3.0, 90.0)), dynamic=1.4, factor=1.3)
+    second = Vehicle("second", (Axle(0.0, 40.0), Axle(2.0, 70.0)), dynamic=1.1, factor=0.7, footprint=0.5)
+    third = Vehicle("third", (Axle(1.0, 20.0),), dynamic=1.8, factor=2.2)
+    whole = convoy(first, [(second, 8.0), (third, -6.0)])
+    assert whole.total == pytest.approx(first.total + second.total + third.total, rel=1e-14)
+    pressed = {a.at: whole.dynamic * whole.factor * a.load for a in whole.axles}
+    alone = {shift + a.at: v.dynamic * v.factor * a.load
+             for v, shift in ((first, 0.0), (second, 8.0), (third, -6.0)) for a in v.axles}  # fmt: skip
+    assert pressed == pytest.approx(alone, rel=1e-14)
+    assert [a.length for a in whole.axles] == [None, None, 0.5, 0.5, None]
+
+
 @pytest.mark.parametrize(
     ("table", "words"),
     [
