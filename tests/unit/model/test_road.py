@@ -78,6 +78,14 @@ def test_weight_of_the_fill_is_the_area_between_extrados_and_road() -> None:
     )
 
 
+def test_stress_below_a_fill_line_is_the_weight_of_what_lies_above() -> None:
+    """Surfacing to the fill line, fill from there on; within the surfacing there is none of the fill."""
+    fill = Fill(cover=0.4, unit_weight=18.0, fill_line=((-9.0, 0.5), (9.0, 0.7)), surfacing_weight=25.0)
+    depth, surfacing = np.array([0.0, 0.1, 0.3, 0.3, 0.9]), np.array([0.2, 0.2, 0.2, 0.0, 0.5])
+    by_hand = [0.0, 25 * 0.1, 25 * 0.2 + 18 * 0.1, 18 * 0.3, 25 * 0.5 + 18 * 0.4]
+    assert stress_at(fill, depth, surfacing) == pytest.approx(by_hand)
+
+
 def test_soil_pushes_inwards_up_to_its_passive_pressure_and_never_pulls() -> None:
     model = covered()
     soil = [t for t in model.ties if t.kind == "soil"]

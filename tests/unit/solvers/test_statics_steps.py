@@ -55,6 +55,49 @@ def test_small_problems_obey_the_joint_law(seed):
     assert t_t[slides] == pytest.approx((-np.sign(y_t) * (cohesion + mu * t_n))[slides], abs=small)
 
 
+def test_pairs_without_compliance_of_their_own_are_lent_a_share_of_their_flexibility():
+    """A millionth of it, or of a thousandth of the mean; a pair whose own is above a thousandth of that gets none."""
+    lent, enough = 1e-6, 1e-3
+    weight = np.array([0.01, 0.1, 10.0, 1e7, 0.01])  # of five bodies of one unknown: the flexibilities are 1 / weight
+    values = np.stack([np.ones((5, 1)), np.sqrt(2.0) * np.ones((5, 1))], axis=1)
+    zero = np.zeros(5)
+
+    def of(own_n, own_t):
+        return StepProblem(
+            matrix=StepMatrix(sp.csr_array(np.diag(weight))), b=zero, columns=np.arange(5)[:, None], values=values,
+            gap=zero, origin=zero[:, None], cone=Cone(zero, zero, zero, zero + np.inf), a_n=own_n, a_t=own_t,
+            dilatancy=zero, active=np.ones(5, dtype=bool), force=1.0, length=1.0,
+        ).added  # fmt: skip
+
+    share = lent * np.maximum(1.0 / weight, 1e-3 * np.mean(1.0 / weight))
+    normal, tangential = of(zero, zero)
+    assert normal == pytest.approx(share, rel=1e-12)
+    assert tangential == pytest.approx(2.0 * share, rel=1e-12)
+    few = np.array([0.0, 1.1, 0.9, 1e9, 0.9]) * enough * share
+    normal, tangential = of(few, 0.9 * enough * lent / weight.max() + zero)
+    assert normal == pytest.approx(np.where([1, 0, 1, 0, 1], share, 0.0), rel=1e-12)
+    assert tangential == pytest.approx(2.0 * share, rel=1e-12)
+    assert not np.any(of(1.1 * enough * share.max() + zero, 2.2 * enough * share.max() + zero))
+    normal, tangential = of(0.9 * enough * share.max() + zero, zero + 1.0)
+    assert normal == pytest.approx(np.where([1, 0, 0, 0, 1], share, 0.0), rel=1e-12)
+    assert not tangential.any()
+
+
+def test_the_flexibility_of_a_pair_in_space_is_one_for_both_tangents():
+    """The larger of both: a pair reads its slip in it, whose direction stays."""
+    zero, m = np.zeros(2), 2
+    values = np.array([[[1.0, 2.0], [0.5, 0.0], [0.0, 3.0]], [[2.0, 0.0], [4.0, 1.0], [1.0, 1.0]]])
+    p = StepProblem(
+        matrix=StepMatrix(sp.csr_array(np.diag([2.0, 5.0]))), b=zero, columns=np.tile(np.arange(2), (m, 1)),
+        values=values, gap=zero, origin=np.zeros((m, 2)), cone=Cone(zero, zero, zero, zero + np.inf), a_n=zero,
+        a_t=zero, dilatancy=zero, active=np.ones(m, dtype=bool), force=1.0, length=1.0,
+    )  # fmt: skip
+    by_hand = [[1 / 2 + 4 / 5, 9 / 5, 9 / 5], [4 / 2, 16 / 2 + 1 / 5, 16 / 2 + 1 / 5]]
+    assert p.flexibility == pytest.approx(np.array(by_hand), rel=1e-14)
+    assert not p.dilates
+    assert replace(p, dilatancy=np.array([0.0, 0.1])).dilates
+
+
 def test_pivoting_goes_on_from_the_states_a_step_has_reached(monkeypatch):
     """Where nothing else ends, pairs that slip are handed on as slipping, not as crushed."""
     arm = np.array([[-0.5, -1.0], [0.5, -1.0]])
