@@ -11,8 +11,10 @@ import concio
 from concio.problem.cone import Cone
 from concio.solvers.lcp.linear_problem import LinearComplementarity
 from concio.solvers.path.equations import PathEquations
+from concio.solvers.path.path_state import CLOSED, CRUSHED, OPEN, STICK, LinearPath
 from concio.solvers.path.rate_lcp import lemke
 from concio.solvers.path.rates import rates, values
+from concio.solvers.path.scaling import ScaledPath
 from lcp_oracles import infeasibility
 
 N, M = 3, 2
@@ -52,6 +54,37 @@ def test_creep_counts_where_nothing_moves_and_above_rounding() -> None:
     found = rates(equations(), still, creep)
     assert found.creep_opening.tolist() == [1e-3, 0.0]
     assert rates(equations(), direction(), creep).creep_opening.tolist() == [0.0, 0.0]
+
+
+def test_functionals_and_rows_of_pairs_are_those_of_the_original_equations() -> None:
+    """In units of the problem, whatever moves; rows that replace others are those of the whole matrix."""
+    law = concio.JointLaw(0.6, normal_stiffness=2e5, tangential_stiffness=7e4, dilatancy=0.2)
+    model = concio.column(width=0.5, height=1.0, blocks=6, block="rigid", friction=law, horizontal=1.0)
+    problem = concio.assemble(model).problem()
+    m, rng = problem.pairs, np.random.default_rng(8)
+    path = LinearPath(problem, rng.normal(size=len(problem.f)), rng.normal(size=m), rng.normal(size=(m, 1)))
+    contact = np.array([OPEN, CLOSED, CRUSHED])[np.arange(m) % 3]
+    sliding = np.array([-1, STICK, 1])[np.arange(m) // 3 % 3]
+    scaled = ScaledPath.of(path)
+    made = PathEquations(scaled, contact, sliding, np.eye(1, problem.unknowns + 2 * m + 1).ravel())
+    u, t_n, t_t, tau = rng.normal(size=problem.unknowns), rng.normal(size=m), rng.normal(size=m), 1.7
+    x = np.concatenate([u / scaled.length, t_n / scaled.force, t_t / scaled.force, [tau]])
+    opening = problem.C_n @ u + problem.laws.normal_compliance * t_n + tau * path.gap_rate
+    slip = problem.C_t @ u + problem.laws.tangential_compliance * t_t + tau * path.tangent_rate[:, 0]
+    for k in range(m):
+        assert made.opening_of(k) @ x == pytest.approx(opening[k] / scaled.length, rel=1e-9)
+        assert made.slip_of(k) @ x == pytest.approx(slip[k] / scaled.length, rel=1e-9)
+    assert made.positions(x, rate=True)[0] == pytest.approx(opening / scaled.length, rel=1e-9)
+    assert made.positions(x, rate=True)[1] == pytest.approx(slip / scaled.length, rel=1e-9)
+    whole = made.assemble().toarray()
+    for k in range(m):
+        for at, (columns, entries) in ((0, made.normal_row(k)), (m, made.tangential_row(k))):
+            row = np.zeros(made.size)
+            np.add.at(row, columns, entries)
+            assert row == pytest.approx(whole[problem.unknowns + at + k], rel=1e-12, abs=0.0)
+    assert [made._lent(row) for row in range(made.size)] == made._lent_to_all().tolist()
+    assert (problem.laws.dilatancy > 0).all()
+    assert len({*zip(contact.tolist(), sliding.tolist(), strict=True)}) == 9
 
 
 def test_distances_from_the_bounds() -> None:
