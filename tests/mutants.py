@@ -43,7 +43,9 @@ HERE = Path(__file__).resolve().parent
 SOURCE = HERE.parent / "src" / "concio"
 KEPT = HERE / "mutants_kept.toml"
 SECONDS = 90
-"""A mutant whose tests take more time of a processor is dead: it made something endless."""
+"""A mutant whose tests take more time of a processor is dead, where they do not without it: it made something
+endless."""
+LONG = "took too long"
 TRACED_SECONDS = 300
 """Time of a processor for the tests that import a module, for long ones, and for the tests that ran the line of a
 mutant; where it is over, the mutant has survived."""
@@ -243,6 +245,10 @@ def killed_by(mutant: Mutant, package: Path, traces: Traces | None = None) -> st
     try:
         room = mutant.tests or tests_for(mutant.path)
         test = first_failure(room, package)
+        if test == LONG:
+            target.write_text(whole, encoding="utf-8")
+            test = "" if first_failure_without(tuple(room), package) == LONG else LONG
+            target.write_text(mutant.put_in(whole), encoding="utf-8")
         others = [] if mutant.tests else [file for file in importers_of(mutant.path) if file not in room]
         traced = traces.tests_of(mutant)[:MOST_TRACED] if traces is not None and not test else []
         for tests, select in ((others, "not long"), ([*room, *others], "long"), (traced, "not long")):
@@ -269,7 +275,13 @@ def first_failure(tests: Sequence[str], package: Path, seconds: int = SECONDS, s
         return ""
     failed = [line for line in done.stdout.split("\n") if line.startswith(("FAILED", "ERROR"))]
     endless = done.returncode == -signal.SIGXCPU
-    return failed[0].split(" - ")[0] if failed else "took too long" if endless else f"exit code {done.returncode}"
+    return failed[0].split(" - ")[0] if failed else LONG if endless else f"exit code {done.returncode}"
+
+
+@cache
+def first_failure_without(tests: tuple[str, ...], package: Path) -> str:
+    """Return how tests end with the package as it is."""
+    return first_failure(tests, package)
 
 
 @cache
