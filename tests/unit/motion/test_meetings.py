@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -71,6 +73,55 @@ def test_blocks_on_one_floor_are_parts_of_their_own():
     _, report = stepper.step(state, 1e-3, Drive(np.zeros(2), np.zeros(2), {}))
     assert report.part[1] == report.part[2] != report.part[3]
     assert len(set(report.part.tolist())) == 3
+
+
+def falling(gap: float, speed: float, h: float, rest_moves: float = 0.0, lifted: float = 0.0):
+    """Return the report of a step in which a block falls on a floor on which another one rests and carries.
+
+    ``rest_moves`` is how fast the other one moves down [m/s], ``lifted`` how high it stands [m].
+    """
+    model = model_of(
+        box("floor", -3.0, 3.0, -1.0, 0.0, kind="fixed"),
+        box("falls", 0.0, 1.0, gap, gap + 0.6, kind="rigid", material="stone"),
+        box("rests", -2.0, -1.0, 0.0, 0.5, kind="rigid", material="stone"), law=0.5, loads=(weight(),),
+    )  # fmt: skip
+    stepper, drive = Stepper(Reference.of(model, G), Scheme()), Drive(np.zeros(2), np.zeros(2), {})
+    start = stepper.located(MotionState.at_rest(stepper.reference))
+    carries, _ = stepper.step(start, 1e-3, drive)
+    assert (carries.memory.force[:, 0] > 0).any()
+    velocity, centre = np.zeros((3, 2)), start.centre.copy()
+    velocity[1:, 1], centre[2, 1] = (-speed, -rest_moves), centre[2, 1] + lifted
+    carries = replace(carries, centre=centre, rotation=start.rotation, velocity=velocity, spin=np.zeros(3))
+    new, report = stepper.step(carries, h, drive)
+    return report, float(new.centre[1, 1]) - 0.3
+
+
+def test_how_deep_a_step_takes_what_was_apart():
+    """By hand: free fall to the end of a step whose middle is still above the floor, and no block that carried counts.
+
+    Where the middle is below, the floor stops the block there.
+    """
+    h, v = 0.01, 1.0
+    report, at = falling(0.008, v, h)
+    deep = h * v + 0.5 * G * h**2 - 0.008
+    assert report.struck == pytest.approx(deep, rel=1e-9)
+    assert at == pytest.approx(-deep, rel=1e-9)
+    assert report.depth < 1e-3 * deep, "it could carry nothing in this step"
+    report, _ = falling(0.004, v, h)
+    assert report.struck == report.depth == pytest.approx(0.5 * h * v - 0.004, rel=1e-6)
+    report, _ = falling(0.5, v, h)
+    assert report.struck == 0.0
+    assert not np.isfinite(report.meets).any()
+
+
+def test_what_carried_before_a_step_neither_strikes_nor_meets():
+    """However fast it is, and wherever it stands."""
+    report, _ = falling(0.5, 0.0, 0.01, rest_moves=0.1)
+    assert report.depth == pytest.approx(0.5 * 0.01 * 0.1, rel=1e-2)
+    assert report.struck == 0.0
+    report, _ = falling(0.5, 0.0, 0.01, rest_moves=0.1, lifted=2e-4)
+    assert report.struck == 0.0
+    assert not np.isfinite(report.meets).any()
 
 
 @pytest.mark.long
