@@ -37,11 +37,14 @@ class LongFractionsError(SolverError):
 
 BITS = 24
 """Bits of a correction that are taken at a time."""
+HALF = 1 << BITS - 1
 ROOM = 3
 """Bits by which each correction is smaller than the one before, at least."""
 AGREES = 32
 """Last bits of what is known of a solution that a fraction may miss."""
 FIRST_BITS = 256
+MANY = 500
+"""Entries of a matrix from which arrays of digits are faster than whole numbers of any length."""
 SINGULAR = 1e200
 """Correction, rows and columns scaled, from which a matrix counts as singular."""
 
@@ -69,31 +72,153 @@ def solve_exactly(rows: Sequence[Row], right: Sequence[Fraction]) -> list[Fracti
         factor = sla.splu(scaled)
     except RuntimeError:
         return None
-    parts = [0] * n
-    largest = [max(abs(v) for v in row.values()) for row in whole]
-    residual, taken, wanted, last = b, 0, FIRST_BITS, math.inf
+    residual = (_Plain if sum(map(len, whole)) < MANY else _InDigits)(whole, b)
+    taken, wanted, last = 0, FIRST_BITS, math.inf
     while taken < MOST_BITS:
-        if not any(residual):
-            return _checked(whole, b, [Fraction(p, 1 << taken) for p in parts])
-        step = factor.solve(np.array([r / s for r, s in zip(residual, largest, strict=True)])) / columns
+        if residual.vanishes:
+            return _checked(whole, b, [Fraction(p, 1 << taken) for p in residual.parts()])
+        step = factor.solve(residual.shares()) / columns
         if not np.isfinite(step).all():
             return None
         now = float(np.abs(step).max())
         if now > min(last * 2.0 ** (BITS - ROOM), SINGULAR):
             return None  # the matrix is singular to rounding, or the factor is too rough for its corrections to shrink
         last = max(now, 1.0)
-        delta = [round(float(s) * 2.0**BITS) for s in step]
-        parts = [(p << BITS) + d for p, d in zip(parts, delta, strict=True)]
-        residual = [
-            (r << BITS) - sum(v * delta[j] for j, v in row.items()) for r, row in zip(residual, whole, strict=True)
-        ]
+        residual.take(np.rint(step * 2.0**BITS))
         taken += BITS
         if taken >= wanted:
-            found = _reconstructed(parts, taken)
+            found = _reconstructed(residual.parts(), taken)
             if found is not None and _checked(whole, b, found) is not None:
                 return found
             wanted *= 2
     raise LongFractionsError
+
+
+class _Plain:
+    """What is left of a right side, and the corrections so far, in whole numbers."""
+
+    def __init__(self, whole: Sequence[dict[int, int]], b: Sequence[int]) -> None:
+        self.whole, self.left = whole, b
+        self.largest = [max(abs(v) for v in row.values()) for row in whole]
+        self.sums = [0] * len(whole)
+
+    @property
+    def vanishes(self) -> bool:
+        """Whether nothing is left."""
+        return not any(self.left)
+
+    def shares(self) -> np.ndarray:
+        """Return what is left as a share of the largest entry of each row (n,)."""
+        return np.array([r / s for r, s in zip(self.left, self.largest, strict=True)])
+
+    def take(self, correction: np.ndarray) -> None:
+        """Take the matrix times a correction, of whole numbers, from what is left times 2**BITS."""
+        delta = [int(d) for d in correction]
+        self.sums = [(p << BITS) + d for p, d in zip(self.sums, delta, strict=True)]
+        products = [sum(v * delta[j] for j, v in row.items()) for row in self.whole]
+        self.left = [(r << BITS) - p for r, p in zip(self.left, products, strict=True)]
+
+    def parts(self) -> list[int]:
+        """Return the sum of all corrections as whole numbers, the last correction in units."""
+        return self.sums
+
+
+class _InDigits:
+    """The same in digits of ``BITS`` bits, from minus half to half: faster where there are many entries.
+
+    Digits of all equations stand in arrays, the last ones first: a shift by ``BITS`` is one by a place, and digits of
+    the matrix times those of a correction are whole numbers below 2**63.
+    """
+
+    def __init__(self, whole: Sequence[dict[int, int]], b: Sequence[int]) -> None:
+        n = len(whole)
+        i = np.repeat(np.arange(n), [len(row) for row in whole])
+        j = np.array([j for row in whole for j in row])
+        self.matrix = sp.vstack(
+            [sp.csr_array((d, (i, j)), shape=(n, n)) for d in _digits([v for row in whole for v in row.values()])],
+            format="csr",
+        )
+        self.left = _digits(b)
+        self.largest = [max(abs(v) for v in row.values()) for row in whole]
+        self.taken: list[np.ndarray] = []
+        self.weights = np.zeros((0, n))
+
+    @property
+    def vanishes(self) -> bool:
+        """Whether nothing is left."""
+        return not self.left.any()
+
+    def shares(self) -> np.ndarray:
+        """Return what is left as a share of the largest entry of each row (n,)."""
+        places = range(len(self.left))
+        if len(self.weights) < len(places):
+            self.weights = np.array([[_over(1 << BITS * k, v) for v in self.largest] for k in places])
+        there = self.left != 0  # a weight beyond all floats belongs to no digit that is there
+        shares = np.zeros(self.left.shape)
+        np.multiply(self.left, self.weights[: len(places)], out=shares, where=there)
+        total: np.ndarray = shares.sum(axis=0)
+        return total
+
+    def take(self, correction: np.ndarray) -> None:
+        """Take the matrix times a correction, of whole numbers, from what is left times 2**BITS."""
+        digits = _digits(correction)
+        n = self.left.shape[1]
+        products = [(self.matrix @ d).reshape(-1, n) for d in digits]
+        left = np.zeros((max(len(self.left) + 1, len(products) - 1 + len(products[0])), n), dtype=np.int64)
+        left[1 : len(self.left) + 1] = self.left
+        for k, product in enumerate(products):
+            left[k : k + len(product)] -= product
+        self.left = _carried(left)
+        self.taken.append(digits)
+
+    def parts(self) -> list[int]:
+        """Return the sum of all corrections as whole numbers, the last correction in units."""
+        count = len(self.taken)
+        total = np.zeros((count + max(map(len, self.taken), default=0), self.left.shape[1]), dtype=np.int64)
+        for k, digits in enumerate(self.taken):
+            total[count - 1 - k : count - 1 - k + len(digits)] += digits
+        return _numbers(_carried(total))
+
+
+def _over(a: int, b: int) -> float:
+    """Return the quotient of two whole numbers; infinity where it is too large."""
+    try:
+        return a / b
+    except OverflowError:
+        return math.inf
+
+
+def _digits(values: Sequence[int] | np.ndarray) -> np.ndarray:
+    """Return the digits (places, n) of whole numbers, the last ones first."""
+    if isinstance(values, np.ndarray) and np.abs(values).max(initial=0.0) < 2.0**62:
+        return _carried(values.astype(np.int64)[None])
+    left = [int(v) for v in values]
+    found: list[list[int]] = []
+    while any(left) or not found:
+        found.append([((v + HALF) & (2 * HALF - 1)) - HALF for v in left])
+        left = [(v - d) >> BITS for v, d in zip(left, found[-1], strict=True)]
+    return np.array(found, dtype=np.int64)
+
+
+def _carried(values: np.ndarray) -> np.ndarray:
+    """Return digits within half of 2**BITS from sums of digits (places, n)."""
+    while True:
+        carry = (values + HALF) >> BITS
+        if not carry.any():
+            used = np.flatnonzero(values.any(axis=1))
+            return values[: used[-1] + 1 if len(used) else 1]
+        more = np.zeros((len(values) + bool(carry[-1].any()), values.shape[1]), dtype=np.int64)
+        more[: len(values)] = values - (carry << BITS)
+        more[1 : len(values) + 1] += carry[: len(more) - 1]
+        values = more
+
+
+def _numbers(digits: np.ndarray) -> list[int]:
+    """Return the whole numbers that have given digits (places, n)."""
+    rows = digits + HALF  # none below zero
+    low = np.ascontiguousarray(rows.T, dtype="<u4").view(np.uint8).reshape(rows.shape[1], len(rows), 4)
+    shift = HALF * (((1 << BITS * len(rows)) - 1) // ((1 << BITS) - 1))
+    return [int.from_bytes(row[:, : BITS // 8].tobytes(), "little") - shift for row in low]
 
 
 def scaled(rows: Sequence[Row], right: Sequence[Fraction]) -> sp.csc_array:
