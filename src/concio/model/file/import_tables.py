@@ -28,7 +28,7 @@ class LayerTable(Table):
     load :
         Kind of load that its lines or points are.
     group :
-        Load group.
+        Load group; "live" by default, unlike that of ``[[loads]]``.
     face :
         Side that the loaded edge looks to.
     support :
