@@ -75,6 +75,18 @@ def test_work_is_bounded_and_what_still_moves_is_told_to_move(monkeypatch):
     assert stopped.verdict.outcome is Outcome.UNDECIDED
 
 
+@pytest.mark.parametrize(("work", "most", "steps"), [(7.5, 100, 7), (2.0, 100, 4), (50.0, 9, 9)])
+def test_steps_are_bounded_by_unknowns_and_pairs_within_a_least_and_a_most(monkeypatch, work, most, steps):
+    """Six unknowns of one block in space, and the pairs of its joint."""
+    result = undecided(leaning(1.03))
+    monkeypatch.setattr(module, "LET_GO_WORK", int(work * (6 + len(result.assembly.pairs))))
+    monkeypatch.setattr(module, "LEAST_LET_GO", 4)
+    monkeypatch.setattr(module, "MOST_LET_GO", most)
+    found = concio.let_go(result)
+    assert found.worked
+    assert len(found.motion.steps) == steps
+
+
 @pytest.mark.long
 def test_what_comes_to_rest_elsewhere_is_another_structure():
     """One of two blocks is described 0.1 m above the floor: it lands and stands there."""

@@ -82,6 +82,9 @@ def test_functionals_and_rows_of_pairs_are_those_of_the_original_equations() -> 
             row = np.zeros(made.size)
             np.add.at(row, columns, entries)
             assert row == pytest.approx(whole[problem.unknowns + at + k], rel=1e-12, abs=0.0)
+    given = made.right_hand_side(np.zeros(m), np.zeros(m), 2.5)
+    assert given[-1] == 2.5
+    assert given[: problem.unknowns] == pytest.approx(problem.f / scaled.force, rel=1e-14)
     assert [made._lent(row) for row in range(made.size)] == made._lent_to_all().tolist()
     assert (problem.laws.dilatancy > 0).all()
     assert len({*zip(contact.tolist(), sliding.tolist(), strict=True)}) == 9
