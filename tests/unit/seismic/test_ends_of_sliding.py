@@ -23,21 +23,25 @@ def boxes(sizes: dict[str, tuple[float, float, float, float]]) -> tuple[Body, ..
     )
 
 
-def slides(bodies: tuple[Body, ...], friction: float, way: str) -> LocalMechanism:
+def slides(bodies: tuple[Body, ...], law: JointLaw, way: str) -> LocalMechanism:
     """Return the mechanism in which the block called "top" slides alone."""
     model = Model(
-        bodies, {"block": Rigid(unit_weight=20.0)}, {"joint": JointLaw(friction=friction)},
+        bodies, {"block": Rigid(unit_weight=20.0)}, {"joint": law},
         loads=(Load("weight", (0.0, -1.0)),),
     )  # fmt: skip
     found = concio.assess(model, site=SITE, direction=way, mechanisms={"top": ["top"]})
     own = next(m for m in (*found.mechanisms, *found.others) if m.name == "top")
-    assert own.multiplier == pytest.approx(friction, rel=1e-6)
+    assert own.multiplier == pytest.approx(law.friction, rel=1e-6)
     return own
 
 
+@pytest.mark.parametrize("strength", [None, 600.0])
 @pytest.mark.parametrize("seed", range(sample(4, 24)))
-def test_a_block_slides_until_its_resultant_comes_to_the_edge_of_the_wall(seed: int) -> None:
-    """A low block on a wall, flush with it, set back or beyond it: H = mu W acts at half of its height."""
+def test_a_block_slides_until_its_resultant_comes_to_the_edge_of_the_wall(seed: int, strength: float | None) -> None:
+    """A low block on a wall, flush with it, set back or beyond it: H = mu W acts at half of its height.
+
+    A joint that crushes under W = f w x at its edge ends half of x before it.
+    """
     rng = np.random.default_rng([44, seed])
     low, high = -0.3, 0.3
     left, right = (float(rng.choice([0.0, 0.0, -0.05, 0.08])) for _ in range(2))
@@ -52,9 +56,10 @@ def test_a_block_slides_until_its_resultant_comes_to_the_edge_of_the_wall(seed: 
     side = 1.0 if way == "right" else -1.0
     resultant = (b0 + b1) / 2 + side * friction * height / 2
     edge = high if way == "right" else low
-    own = slides(tuple(bodies), friction, way)
+    crushed = 0.0 if strength is None else 20.0 * (b1 - b0) * height / (2.0 * strength)
+    own = slides(tuple(bodies), JointLaw(friction, compressive_strength=strength), way)
     assert own.followed.reason == "joint opens"
-    assert own.followed.end == pytest.approx(side * (edge - resultant), abs=1e-5)
+    assert own.followed.end == pytest.approx(side * (edge - resultant) - crushed, abs=1e-5)
 
 
 @pytest.mark.parametrize("seed", range(sample(2, 10)))

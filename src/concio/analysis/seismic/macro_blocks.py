@@ -17,7 +17,7 @@ from typing import Literal
 
 import numpy as np
 
-from concio.analysis.seismic.sliding_faces import GROUND, ends_of_sliding, face_ends, face_of
+from concio.analysis.seismic.sliding_faces import GROUND, ends_of_sliding, ends_set_back, face_ends, face_of
 from concio.contact.assembly import Assembly
 from concio.fem.discretisation import FIXED, RIGID
 from concio.kinematics.frames import turned_left
@@ -211,10 +211,10 @@ def mechanics_of(assembly: Assembly, velocity: Array, normal_force: Array) -> Me
     speed = np.linalg.norm((pairs.C_t @ velocity).reshape(len(pairs), d - 1), axis=1)
     joints: list[MacroJoint] = []
     crushing = np.isfinite(assembly.laws.cap) & (pairs.interface >= 0) & (d == 2)
+    macro = np.array([of_body.get(i, GROUND) for i in range(len(motion))])
     for a, b in sorted({(int(across[k]), int(beyond[k])) for k in active if crushing[k]}):
         own = active[(across[active] == a) & (beyond[active] == b) & crushing[active]]
-        joints += _set_back(assembly, blocks, own, a, b, normal_force, top)
-    macro = np.array([of_body.get(i, GROUND) for i in range(len(motion))])
+        joints += _set_back(assembly, blocks, macro, own, a, b, normal_force, top)
     single, cohesion = active[~crushing[active]], assembly.laws.cohesion
     if d == 2:
         stays = (np.abs(pairs.C_n @ velocity) <= still) & ~crushing
@@ -275,7 +275,7 @@ def _grouped(assembly: Assembly, motion: Array, top: float) -> dict[int, int]:
 
 
 def _set_back(
-    assembly: Assembly, blocks: list[MacroBlock], own: Array, a: int, b: int, force: Array, top: float
+    assembly: Assembly, blocks: list[MacroBlock], macro: Array, own: Array, a: int, b: int, force: Array, top: float
 ) -> list[MacroJoint]:
     """Return the joint that crushing pairs make: a hinge set back from the edge, or rollers where it slides whole."""
     pairs, law = assembly.pairs, assembly.laws
@@ -287,7 +287,12 @@ def _set_back(
     per_length = float(law.cap[every].sum() / pairs.area[every].sum() * _width(assembly, own))
     turning = turns[1] - turns[0]
     if abs(turning) * max(float(np.ptp(along)), 1e-12) <= STILL[2] * top:
-        return [MacroJoint("roller", a, b, pairs.point[k], normal, friction=float(law.friction[k])) for k in own]
+        share = float(law.cohesion[every].sum()) / 2
+        return [
+            MacroJoint("roller", a, b, point, normal, face, low=low, high=high, friction=float(law.friction[own[0]]),
+                       cohesion=share)
+            for point, face, low, high in ends_set_back(assembly, macro, int(own[0]), N / (2.0 * per_length))
+        ]  # fmt: skip
     # points of b at the place s along the tangent approach a where turning * s is negative along the normal
     rising = float(turned_left(tangent) @ normal) * turning
     edge, inwards = (along.min(), 1.0) if rising > 0 else (along.max(), -1.0)

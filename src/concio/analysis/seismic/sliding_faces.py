@@ -124,3 +124,19 @@ def ends_of_sliding(assembly: Assembly, macro: Array, loaded: Array, slides: Arr
         cohesion[ends] = law.cohesion[line].sum() / 2
         kept += ends
     return np.array(kept, dtype=int), cohesion
+
+
+def ends_set_back(assembly: Assembly, macro: Array, k: int, depth: float) -> list[tuple[Array, int, float, float]]:
+    """Return the ends of a joint that crushes while it slides: point, face, and where this face begins and ends [m].
+
+    The contact force stands within ``depth`` [m] of the ends of what touches nowhere: there its joint is crushed.
+    """
+    lows, highs = zip(*(face_ends(assembly, macro, k, face) for face in (0, 1)), strict=True)
+    low, high = max(lows), min(highs)
+    depth = min(depth, (high - low) / 2)
+    found = []
+    for at, corners in ((low + depth, lows), (high - depth, highs)):
+        face = 0 if abs(corners[1]) <= abs(corners[0]) else 1  # the corner of b, or of both, slides on the face of a
+        point = assembly.pairs.point[k] + at * assembly.pairs.tangents[k, 0]
+        found.append((point, face, lows[face] + depth - at, highs[face] - depth - at))
+    return found
