@@ -30,6 +30,9 @@ MOST_TIES = 5
 SAME = 1e-6
 """Multipliers closer than this, relative, are one number in words."""
 
+HUGE = 1e3
+"""Multiplied loads over all constant ones from which on a number says only that nothing crushes."""
+
 LOCKED = (
     "the bound of associated friction is locked, which says nothing about Coulomb friction: there sliding joints "
     "do not wedge"
@@ -92,6 +95,8 @@ def _outcome(found: LimitResult) -> tuple[Outcome, str]:
         return Outcome.HOLDS, "The load can grow without bound."
     if found.none_of_it:
         return Outcome.FAILS, f"No multiple of {named(found)} is carried."
+    if _without_limit(found):
+        return Outcome.INCOMPLETE, f"No limit of {named(found)} was found."
     if not math.isnan(found.design):
         return Outcome.HOLDS, f"Design with {max(found.design, 0.0):.6g} times {named(found)} at most."
     if found.associated.locked:
@@ -167,7 +172,29 @@ def _design(found: LimitResult, question: Question) -> str:
             return f"{text}."
         return f"{text}, though {found.carried:.6g} is carried where the load grows from rest."
     kN = _forces(question, low, found.assembly.model.report)
+    if share := _without_limit(found):
+        return (
+            f"No limit of {groups} was found: certified Coulomb states carry {low:.6g} times it ({kN}, {share:.3g} "
+            "times all constant loads) as the load grows from rest. Only joints that never crush carry as much: give "
+            "them a compressive strength before a design value is taken."
+        )
     return f"Design with {low:.6g} times {groups} ({kN}) at most: {_why(found)}."
+
+
+def _without_limit(found: LimitResult) -> float:
+    """Return the multiplied loads carried over all constant ones where that says only that nothing crushes; else 0."""
+    joints = np.asarray(found.assembly.pairs.interface) >= 0  # the fill beside a ring has caps of its own
+    if math.isnan(found.design) or found.collapse_shown or np.isfinite(found.assembly.laws.cap[joints]).any():
+        return 0.0
+    if found.design < found.carried * (1 - SAME) or not found.associated.locked:
+        return 0.0
+    acting = limit_question(found).acting
+    live, constant = (
+        sum(float(np.linalg.norm(a.force)) or a.size for a in acting if a.role == role)
+        for role in ("multiplied", "constant")
+    )
+    share = found.design * live / constant if constant > 0 else 0.0
+    return share if share > HUGE else 0.0
 
 
 def _why(found: LimitResult) -> str:
@@ -308,6 +335,8 @@ def _limits(found: LimitResult) -> tuple[str, ...]:
             f"to their "
             "middle: it falls as contact points are added, and is not counted"
         )
+    if found.endless or _without_limit(found):
+        told.append("no joint crushes in this model: a compressive strength would bound the load")
     told += (*_breakable(found), *crushing(assembly))
     if found.lent_compliance:
         told.append(REGULARISED)

@@ -15,6 +15,7 @@ from concio import JointLaw, Load, Model, Polyhedron, Rigid
 from concio.analysis.limit_torsion import twisting
 from concio.cli.main import app
 from concio.problem.solution import PROVEN_FAILURES
+from concio.verdict.italian import italian
 from concio.verdict.limit_words import limit_lines
 from concio.verdict.verdict import Outcome
 from models import box, model_of
@@ -81,6 +82,43 @@ def test_where_locking_is_right_it_is_said_why() -> None:
     assert "certified at any length, since no joint changes its state" in found.verdict.sentence
     assert found.summary()["grows_without_end"]
     assert found.summary()["design_multiplier"] is None
+
+
+BRIDGE = """
+[bridge]
+span = 6.0
+rise = 1.5
+ring = 0.45
+voussoirs = {voussoirs}
+width = 4.0
+block = "rigid"
+unit_weight = 22.0
+{law}
+[fill]
+cover = 0.4
+unit_weight = 19.0
+friction_angle = 30.0
+mobilised = 0.33
+[vehicle]
+name = "CS 454 double 2 x 9.5 t"
+position = 3.0
+"""
+
+
+@pytest.mark.parametrize("voussoirs", [8, 20])
+def test_what_only_joints_that_never_crush_carry_is_no_design_value(voussoirs: int) -> None:
+    """A ring of 0.45 m holds by wedging at midspan; at 5 MPa its thrust is at most 9 MN, and bounds the load."""
+    hard = concio.loads(BRIDGE.format(voussoirs=voussoirs, law="friction = 0.6"))
+    found = concio.limit(hard, path=False, steps=True, search=False)
+    assert found.verdict.outcome is Outcome.INCOMPLETE
+    assert found.verdict.headline == "No limit of 'live' was found."
+    assert "Design with" not in found.verdict.sentence
+    assert "give them a compressive strength" in found.verdict.answer
+    assert {piece.language for piece in italian(found.verdict.answer)} == {"it"}
+    law = 'friction = { friction = 0.6, compressive_strength = "5 MPa" }'
+    soft = concio.limit(concio.loads(BRIDGE.format(voussoirs=voussoirs, law=law)), path=False, steps=True, search=False)
+    assert soft.verdict.headline.startswith("Design with")
+    assert soft.design * 186.4 <= 2 * 5e3 * 0.45 * 4.0
 
 
 @pytest.mark.parametrize("seed", range(sample(2, 8, 16)))
