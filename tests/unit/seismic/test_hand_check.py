@@ -60,6 +60,15 @@ def test_loads_that_push_and_supports_that_hold() -> None:
     assert agreement(bending(8), direction="right", live="live") < 1e-9
 
 
+@pytest.mark.long  # two assessments in space
+@pytest.mark.parametrize("given", [1.0, -1.0])
+def test_loads_in_space_push_the_way_that_is_asked_for_whichever_way_they_are_given(given: float) -> None:
+    wall = concio.extrude(overturning(2), 0.5)
+    live = Load("weight", (given, 0.0, 0.0), group="live")
+    model = replace(wall, loads=(*(load for load in wall.loads if load.group != "live"), live))
+    assert agreement(model, direction="+x", live="live") < 1e-9
+
+
 @pytest.mark.long
 def test_a_wall_in_space_and_one_whose_courses_slide() -> None:
     bodies = (
