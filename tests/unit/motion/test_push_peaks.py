@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import concio
-from concio.analysis.motion.located import highest
+from concio.analysis.motion.located import _bound, highest
 from concio.analysis.motion.push_result import PushEnding
 from models import box, model_of, weight
 from samples import sample
@@ -138,3 +138,20 @@ def test_a_kink_beyond_the_largest_known_value_is_found(mirrored):
 
     found = highest(at, [(x, at(x)) for x in (0.0, 0.5, 1.0)], 1e-9)
     assert found == pytest.approx(kink, abs=1e-8)
+
+
+def test_the_bound_between_two_points_of_a_concave_curve_is_where_lines_of_its_neighbours_meet():
+    points = [(0.0, 0.0), (1.0, 3.0), (4.0, 6.0), (6.0, 5.0), (8.0, 2.0)]
+    assert _bound(points[1:], 0)[0] == pytest.approx(6.0 + 0.5 * 3.0)  # only the line on the right, back to the end
+    assert _bound(points, 1)[0] == pytest.approx(3.0 + 3.0 * 9.0 / 7.0)  # 3 x = 6 - 0.5 (x - 4)
+    assert _bound(points, 3)[0] == pytest.approx(5.0 - 0.5 * 2.0)  # only the line on the left, on to the right end
+    assert _bound(points[:2], 0)[0] == np.inf
+    rng = np.random.default_rng(0)
+    for _ in range(50):
+        at = np.sort(rng.uniform(-4.0, 4.0, 6))
+        top, steep = rng.uniform(-4.0, 4.0), rng.uniform(0.1, 3.0)
+        curve = [(float(x), float(-steep * (x - top) ** 2)) for x in at]
+        k = int(np.argmax([y for _, y in curve]))
+        for i in (k - 1, k) if 0 < k < 5 else ():
+            fine = np.linspace(at[i], at[i + 1], 50)
+            assert _bound(curve, i)[0] >= (-steep * (fine - top) ** 2).max() - 1e-9

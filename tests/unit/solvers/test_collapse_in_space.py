@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from concio import JointLaw, Load, Model, Polyhedron, Rigid
 from concio.contact.assembly import assemble
 from concio.problem.tolerances import CONE_TARGET
 from concio.solvers.statics import collapse_search, cone_statics
+from concio.solvers.statics.collapse_cones import forces_in_space
 from concio.solvers.statics.collapse_search import CollapseSearch, find_collapse_state
 from concio.solvers.statics.collapse_state import certify_collapse
 from concio.solvers.statics.cone_interior import ConeAnswer
@@ -146,3 +148,22 @@ def test_programmes_with_frozen_strength_end_where_their_digits_are_enough(monke
     assert early.certified
     assert early.multiplier == pytest.approx(late.multiplier, rel=1e-8)
     assert steps[0] < steps[1]
+
+
+def test_what_is_pulled_open_and_does_not_slip_holds_sideways_by_what_is_left_of_its_strength() -> None:
+    """Pulled by its tensile strength T on 0.8 m2, a glued joint still holds (c - mu T) A to the side, either way."""
+    ground = Polyhedron.box("ground", (-1, -1, -0.5), (2, 2, 0), kind="fixed")
+    body = Polyhedron.box("body", (0, 0, 0), (1.0, 0.8, 1.0), kind="rigid")
+    pulled = Load("body", (0, 0, 20.0))
+    side = Load("point", (1.0, 0, 0), group="live", bodies=("body",), at=(0.5, 0.4, 0))
+    law = JointLaw(0.5, cohesion=50.0, tensile_strength=20.0)
+    assembly = assemble(Model((ground, body), {"block": Rigid(20.0)}, {"joint": law}, loads=(pulled, side)))
+    problem = assembly.problem({"live": 0.0})
+    none = np.zeros(problem.pairs, dtype=bool)
+    motion = SimpleNamespace(opens=~none, crushes=none, slips=none, direction=np.zeros((problem.pairs, 2)))
+    found = forces_in_space(problem, motion, assembly.loads["live"])
+    assert found is not None
+    least, normal, friction = found
+    assert least == pytest.approx(-(50.0 - 0.5 * 20.0) * 0.8, rel=1e-9)
+    assert normal.sum() == pytest.approx(-20.0 * 0.8, rel=1e-9)
+    assert friction.sum(axis=0) == pytest.approx([32.0, 0.0], abs=1e-8)

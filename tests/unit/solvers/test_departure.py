@@ -7,6 +7,7 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -23,7 +24,7 @@ from concio.solvers.algebra.scaled import Scaled, scale
 from concio.solvers.interior.run import Run
 from concio.solvers.methods import find
 from concio.solvers.relaxation import slow_step as one_step
-from concio.solvers.relaxation.slow_motion import MOST, relax
+from concio.solvers.relaxation.slow_motion import MOST, ahead, relax
 from concio.solvers.relaxation.unbounded_motion import unbounded_motion, verify_motion
 from concio.solvers.states.state_reading import Finished, natural_residual, read_states
 from concio.verdict.step_verdict import proof as certificate_sentence
@@ -297,3 +298,22 @@ def test_a_problem_without_pairs_is_linear_or_falls() -> None:
     answer = find("auto")(held)
     assert answer.solved
     np.testing.assert_allclose(held.K @ answer.displacement, held.f, rtol=0, atol=1e-9 * 10.0)
+
+
+def test_a_steady_motion_goes_on_almost_to_where_a_pair_meets_or_a_slip_has_gone_back() -> None:
+    """Gaps over rates by hand, of pairs that come nearer, and of slips that go back under pressure."""
+    known = {
+        "meets": ((1.0, 0.0), (-0.01, 0.0)), "parts": ((1.0, 0.0), (0.01, 0.0)), "back": ((0.0, 0.5), (0.0, -0.02)),
+        "away": ((0.0, 0.5), (0.0, 0.02)), "dust": ((0.0, 1e-8), (0.0, -1e-9)),
+    }  # fmt: skip
+
+    def asked(*names: str, pressed: float = 1.0) -> float:
+        places, rates = (np.array([known[name][i] for name in names]) for i in (0, 1))
+        rough = np.ones(len(names), dtype=bool)
+        at: Any = SimpleNamespace(position=lambda u, t: places, along=lambda step: rates, rough=rough)
+        return ahead(at, np.zeros(1), np.full((len(names), 2), pressed), np.zeros(1))
+
+    assert asked("meets", "parts", "away") == pytest.approx(0.999 * 100.0)
+    assert asked("back", "meets", "dust") == pytest.approx(0.999 * 25.0)
+    assert asked("back", "meets", pressed=0.0) == pytest.approx(0.999 * 100.0)
+    assert asked("parts", "away") == 0.0

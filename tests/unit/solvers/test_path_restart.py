@@ -13,6 +13,7 @@ import concio
 from concio.analysis.limit import limit
 from concio.problem.solution import Status
 from concio.solvers.path import restart
+from concio.solvers.path.path_state import LinearPath
 from concio.solvers.path.record import Outcome
 from concio.solvers.path.restart import TENTH, is_jump, look_beyond, moves_freely, shrinks, step_between
 from concio.verdict.limit_words import limit_lines
@@ -117,3 +118,20 @@ def test_a_load_under_which_the_structure_fell_is_tried_last(monkeypatch, fallen
     found = look_beyond(None, SimpleNamespace(parameter=2.0), 1.0, least=1e-2, fallen=fallen)
     assert found.state is None
     assert [share for how, share in asked if how == "let go"] == order
+
+
+def test_what_crushes_sinks_freely_and_moves_no_other_way():
+    """A block under four times its weight, which is what its joint crushes at: each point has its cap."""
+    column = concio.column(width=0.4, height=1.0, blocks=1, block="rigid", unit_weight=20.0)
+    law = concio.JointLaw(0.6, compressive_strength=100.0)
+    live = concio.Load("body", (0.0, -20.0), group="live")
+    model = replace(column, laws=dict.fromkeys(column.laws, law), loads=(*column.loads, live))
+    found = concio.run_path(model, [concio.Stage("dead", {"dead": 1.0}), concio.Stage("live", {"live": 10.0})])
+    assert found.steps[-1].factors["live"] == pytest.approx(4.0, rel=1e-9)
+    standing = next(step for step in reversed(found.steps) if step.stage == 0)
+    for step, crushes in ((found.steps[-1], True), (standing, False)):
+        problem = found.assembly.problem(step.factors)
+        path, state = LinearPath(problem, np.zeros(problem.unknowns)), replace(step.state, parameter=0.0)
+        assert moves_freely(path, state, np.array([0.0, -1.0, 0.0])) is crushes
+        for motion in ([0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]):
+            assert not moves_freely(path, state, np.array(motion))

@@ -13,6 +13,7 @@ import concio
 from concio import Body, JointLaw, Load, Model, Polyhedron, Rigid, Support, Tie
 from concio.contact.detection import detect
 from concio.verdict.attention import attention_of
+from concio.verdict.question import group_words
 
 DOWN = (Load("weight", (0.0, -1.0)),)
 
@@ -192,3 +193,12 @@ def test_torsion_is_told_of_blocks_between_parallel_joints_alone() -> None:
         )  # fmt: skip
         limits = concio.solve(model).verdict.limits
         assert any("1 block held by parallel joints alone" in line for line in limits) is told
+
+
+def test_what_belongs_to_a_load_group_is_said_kind_by_kind() -> None:
+    column = concio.column(width=0.4, height=1.0, blocks=2, block="rigid", unit_weight=20.0)
+    loads = (*column.loads, *(Load("body", (1.0, 0.0), group="live") for _ in range(2)))
+    model = replace(column, loads=loads)
+    assert group_words(model, "dead") == "self-weight"
+    assert group_words(model, "live") == "2 body loads"
+    assert group_words(model, "wind") == "nothing"
