@@ -12,7 +12,7 @@ import concio
 from concio import JointLaw, Load, Model, Polyhedron, Rigid
 from concio.analysis.limit import dead_and_live
 from concio.contact.joint_points import edge, graded_error, graded_half, graded_rule, joint_rule, points_along
-from concio.contact.patch_points import CRUSHING, spread_points
+from concio.contact.patch_points import CRUSHING, _together, spread_points
 from concio.model.interfaces.patches import Patch
 from concio.solvers.statics.associated_limit import associated_limit
 from samples import sample
@@ -139,3 +139,14 @@ def test_how_well_crushing_is_told_stands_in_the_verdict() -> None:
     tied = concio.Tie("tie", "b", (0.0, 0.5), "", (-1.0, 0.5), stiffness=1e3, yield_force=5.0)
     hard = replace(pressed(0.1, 2), laws={"joint": JointLaw(0.5)}, ties=(tied,))
     assert not any("crush" in line for line in concio.solve(hard, factors={"live": 10.0}).verdict.limits)
+
+
+@pytest.mark.parametrize("size", [1e-4, 1.0, 1e4])
+def test_points_that_parts_share_are_one_whatever_the_size_of_the_joint(size: float) -> None:
+    """A grid of nine points, each three times but for rounding: their areas are added, none is lost."""
+    grid = size * np.array([(x, y) for x in (0.0, 0.4, 1.0) for y in (0.0, 0.5, 0.9)])
+    rng = np.random.default_rng(0)
+    points = np.vstack([grid + 1e-13 * size * rng.uniform(-1, 1, grid.shape) for _ in range(3)])
+    found, weights = _together(points, np.tile(np.arange(1.0, 10.0), 3))
+    assert len(found) == 9
+    assert sorted(weights.tolist()) == [3.0 * k for k in range(1, 10)]

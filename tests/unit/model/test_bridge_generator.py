@@ -9,6 +9,7 @@ import pytest
 
 import concio
 from concio.errors import InputError
+from concio.model.generate.bridge_barrel import barrel_between
 from concio.model.generate.profiles import profile_of
 
 ARCHES = [
@@ -160,3 +161,13 @@ def test_a_list_of_one_ring_is_that_ring() -> None:
             np.testing.assert_allclose(b.outline, a.outline, atol=1e-12)
     assert len(made(ring=[0.2, 0.2]).free_bodies[0].outline) == 4
     assert len(one.free_bodies[0].outline) == 6
+
+
+@pytest.mark.parametrize("thickness", [0.0, 1e-8, -0.1])
+def test_a_ring_without_thickness_to_speak_of_is_refused(thickness: float) -> None:
+    low = [[1.0, 2.0], [3.0, 3.0], [5.0, 2.0]]
+    high = [[x, y + thickness] for x, y in low]
+    with pytest.raises(InputError, match="ring 1 has no thickness at x"):
+        barrel_between("bridge", [low, high], 4, "")
+    high = [[x, y + 0.3] for x, y in low]
+    assert len(barrel_between("bridge", [low, high], 4, "").pieces) == 4
