@@ -49,7 +49,9 @@ class Candidates:
     edge: Array
 
 
-def find_candidates(edges: MovingEdges, placed: PlacedEdges, skin: float, through: float = THROUGH) -> Candidates:
+def find_candidates(
+    edges: MovingEdges, placed: PlacedEdges, skin: float, through: float = THROUGH, opening: float = 0.0
+) -> Candidates:
     """Return the candidates of placed edges.
 
     Parameters
@@ -60,20 +62,25 @@ def find_candidates(edges: MovingEdges, placed: PlacedEdges, skin: float, throug
         Distance within which edges are candidates [m].
     through : float
         Depth over the narrower body's width beyond which edges stand behind each other.
+    opening : float
+        Largest initial opening of a joint, by which edges may stand deeper [m].
     """
     near = np.full(len(edges.width), skin)
     facing = facing_pairs(edges.as_edges(placed), near, -near, FACING)
     narrow = edges.width[facing.bodies].min(1)
-    keep = (facing.g_min <= 2 * skin) & (facing.g_max >= -through * narrow)
+    keep = (facing.g_min <= 2 * skin) & (facing.g_max >= -through * narrow - opening)
     a, b = facing.edges[keep].T
-    corner, edge = _corners(edges, placed, skin, a, b)
+    corner, edge = _corners(edges, placed, skin, opening, a, b)
     return Candidates(a, b, corner, edge)
 
 
-def _corners(edges: MovingEdges, placed: PlacedEdges, skin: float, a: Array, b: Array) -> tuple[Array, Array]:
+def _corners(
+    edges: MovingEdges, placed: PlacedEdges, skin: float, opening: float, a: Array, b: Array
+) -> tuple[Array, Array]:
     """Return corners near edges that neither of their own edges faces."""
     corners = np.flatnonzero(edges.convex)
-    low, high = np.minimum(placed.start, placed.end) - skin, np.maximum(placed.start, placed.end) + skin
+    reach = skin + opening
+    low, high = np.minimum(placed.start, placed.end) - reach, np.maximum(placed.start, placed.end) + reach
     points = shapely.points(placed.start[corners])
     found, near = shapely.STRtree(shapely.box(*low.T, *high.T)).query(points)
     corner, edge = corners[found], near
@@ -82,7 +89,8 @@ def _corners(edges: MovingEdges, placed: PlacedEdges, skin: float, a: Array, b: 
     outward = turned_right(placed.tangent[edge])
     distance = dot(placed.start[corner] - placed.start[edge], outward)
     back, ahead = -placed.tangent[edges.before[corner]], placed.tangent[corner]
-    faces = (dot(back, outward) > -0.1) & (dot(ahead, outward) > -0.1) & (np.abs(distance) <= 2 * skin)
+    faces = (dot(back, outward) > -0.1) & (dot(ahead, outward) > -0.1)
+    faces &= (distance <= 2 * skin) & (distance >= -2 * skin - opening)
     corner, edge = corner[faces], edge[faces]
     count = len(edges.body)
     covered = np.concatenate([a * count + b, b * count + a])

@@ -81,7 +81,9 @@ class SolidSearch(ContactSearch[PlacedSolids, SolidLayout]):
 
     def found(self, placed: PlacedSolids, old: SolidLayout | None) -> tuple[SolidLayout, bool]:
         """Return the layout where bodies stand; with the pairs of the old one only what is elastic differs."""
-        toucher = find_solid_candidates(self.solids, placed, self.fixed, self.skin, self.slack, self.same)
+        toucher = find_solid_candidates(
+            self.solids, placed, self.fixed, self.skin, self.slack, self.same, self.opening
+        )
         slots = self._slots(toucher)
         if old is not None:  # what stood for others goes on doing so
             toucher.chosen[:] = np.isin(slots.key, old.slots.key[old.toucher.chosen])
@@ -150,7 +152,7 @@ class SolidSearch(ContactSearch[PlacedSolids, SolidLayout]):
 
 
 def find_solid_candidates(
-    solids: MovingSolids, placed: PlacedSolids, fixed: Array, skin: float, slack: float, same: float
+    solids: MovingSolids, placed: PlacedSolids, fixed: Array, skin: float, slack: float, same: float, opening: float
 ) -> SolidToucher:
     """Return the candidates of placed surfaces.
 
@@ -164,13 +166,15 @@ def find_solid_candidates(
         Distance within which features are candidates [m].
     slack, same : float
         See :class:`concio.contact.solid_touch.SolidToucher` [m].
+    opening : float
+        Largest initial opening of a joint, by which features may stand deeper [m].
     """
     a, b = near_bodies(solids, placed, fixed, skin)
     one, other = np.concatenate([a, b]), np.concatenate([b, a])
     corner, face = _products(solids.body, other, solids.face_body, one)
-    corner, face = _on_faces(solids, placed, *_of_finer(solids, corner, face), skin)
+    corner, face = _on_faces(solids, placed, *_of_finer(solids, corner, face), skin, opening)
     first, second = _products(solids.edge_body, a, solids.edge_body, b)
-    edges, sign = _across(solids, placed, np.column_stack([first, second]), skin)
+    edges, sign = _across(solids, placed, np.column_stack([first, second]), skin, opening)
     body_a = np.concatenate([solids.face_body[face], solids.edge_body[edges[:, 0]]])
     body_b = np.concatenate([solids.body[corner], solids.edge_body[edges[:, 1]]])
     joints, joint = _near_joints(solids, a, b), np.full(len(body_a), -1)
@@ -234,13 +238,13 @@ def _of_finer(solids: MovingSolids, corner: Array, face: Array) -> tuple[Array, 
 
 
 def _on_faces(
-    solids: MovingSolids, placed: PlacedSolids, corner: Array, face: Array, skin: float
+    solids: MovingSolids, placed: PlacedSolids, corner: Array, face: Array, skin: float, opening: float
 ) -> tuple[Array, Array]:
     """Return corners that may come to stand on faces, of all pairs (n,)."""
     normal, start = placed.normal[face], placed.start[corner]
     away = start - placed.start[solids.face_start[face]]
     gap = dot(normal, away)
-    deep = THROUGH * np.minimum(solids.width[solids.body[corner]], solids.width[solids.face_body[face]])
+    deep = THROUGH * np.minimum(solids.width[solids.body[corner]], solids.width[solids.face_body[face]]) + opening
     keep = (gap <= 2 * skin) & (gap >= -deep)
     corner, face, normal, away, start = corner[keep], face[keep], normal[keep], away[keep], start[keep]
     around = placed.start[solids.around[corner]] - start[:, None]
@@ -253,7 +257,9 @@ def _on_faces(
     return corner[keep], face[keep]
 
 
-def _across(solids: MovingSolids, placed: PlacedSolids, edges: Array, skin: float) -> tuple[Array, Array]:
+def _across(
+    solids: MovingSolids, placed: PlacedSolids, edges: Array, skin: float, opening: float
+) -> tuple[Array, Array]:
     """Return edges that may come to cross, of all pairs (n, 2), and the signs of their normals (k,)."""
     ends = placed.start[solids.edge]
     low, high = ends.min(axis=1), ends.max(axis=1)
@@ -273,8 +279,8 @@ def _across(solids: MovingSolids, placed: PlacedSolids, edges: Array, skin: floa
         kept = edges[keep]
         way = np.full(len(kept), sign)
         crossing = Crossing.of(ends[kept], way)
-        narrow = solids.width[solids.edge_body[kept]].min(axis=1)
-        close = (crossing.beyond <= 2 * skin) & (crossing.gap <= 2 * skin) & (crossing.gap >= -THROUGH * narrow)
+        deep = THROUGH * solids.width[solids.edge_body[kept]].min(axis=1) + opening
+        close = (crossing.beyond <= 2 * skin) & (crossing.gap <= 2 * skin) & (crossing.gap >= -deep)
         found.append(kept[close])
         signs.append(way[close])
     return np.concatenate(found), np.concatenate(signs)

@@ -349,3 +349,18 @@ def test_bad_input_of_a_motion_in_space_is_told_in_words():
         concio.dynamics(model, {"w": pulse})
     with pytest.raises(concio.InputError, match=r"\(v_x, v_y, v_z\) or \(v_x, v_y, v_z, w_x, w_y, w_z\)"):
         concio.dynamics(model, duration=0.1, velocities={"b0": (1.0, 0.0)})
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+@pytest.mark.parametrize("gap", [0.004, 0.03])
+def test_a_block_falls_by_the_initial_gap_of_its_joint_however_thin_the_ground_is(dim, gap):
+    """The ground is 5 cm thick: bodies stand deeper in each other than a tenth of that where a joint begins open."""
+    block = concio.column(width=0.4, height=0.5, blocks=1, block="rigid", unit_weight=20.0)
+    model = replace(block, rules=tuple(replace(rule, gap=gap) for rule in block.rules))
+    model = concio.extrude(model, 0.3) if dim == 3 else model
+    found = concio.dynamics(model, duration=0.25, step=2e-3)
+    assert found.ending.name == "COMPLETE"
+    fallen = found.reference.disc.centroids - found.end.centre
+    assert fallen[1, -1] == pytest.approx(gap, abs=5e-6)
+    assert np.abs(fallen[:, :-1]).max() <= 1e-9
+    assert found.certificate <= 1e-9

@@ -223,6 +223,7 @@ def test_the_plane_says_the_same_of_a_pillar_through_the_public_door():
     [
         ({"direction": (0.0, 0.0, 0.0)}, "is not a direction"),
         ({"direction": (1.0, 0.0, 0.0, 0.0)}, "is not a direction"),
+        ({"direction": "right"}, "is not a direction"),
         ({"control": concio.ControlPoint("b9", (0.0, 0.0, 1.0), (1.0, 0.0, 0.0))}, "no body called 'b9'"),
     ],
 )

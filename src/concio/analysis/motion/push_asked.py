@@ -81,7 +81,10 @@ def live_asked(reference: Reference, live: str | Sequence[str] | None) -> tuple[
 
 def direction_asked(direction: float | Sequence[float], dim: int) -> Array:
     """Return the unit vector (d,) of a direction that was given; a horizontal one in space may have two components."""
-    given = np.array([direction] if np.ndim(direction) == 0 else direction, dtype=float)
+    try:
+        given = np.array([direction] if np.ndim(direction) == 0 else direction, dtype=float)
+    except (TypeError, ValueError):
+        given = np.zeros(0)  # words, or rows of different lengths
     size = float(np.linalg.norm(given)) if given.shape in ((1,), (2,), (dim,)) else np.nan
     if not 0 < size < np.inf:
         msg = f"direction = {direction} is not a direction"
