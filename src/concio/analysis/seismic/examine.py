@@ -15,12 +15,11 @@ from concio.analysis.seismic.directions import Push
 from concio.analysis.seismic.free_standing import FreeStanding, branch_of
 from concio.analysis.seismic.linkage import Force, Linkage, merged
 from concio.analysis.seismic.local_mechanism import LocalMechanism
-from concio.analysis.seismic.macro_blocks import Mechanics, carried
+from concio.analysis.seismic.macro_blocks import GROUND, Mechanics, carried
 from concio.analysis.seismic.macro_contacts import contacts_of
 from concio.analysis.seismic.participation import Chain, Participant, gathered
 from concio.analysis.seismic.sequence import Sequence, follow_in_steps
 from concio.analysis.seismic.site import Site
-from concio.analysis.seismic.sliding_faces import GROUND
 from concio.analysis.seismic.tie_history import together
 from concio.analysis.seismic.weakest_mechanism import Found
 from concio.contact.assembly import Assembly

@@ -21,8 +21,7 @@ from functools import cached_property
 
 import numpy as np
 
-from concio.analysis.seismic.macro_blocks import MacroJoint, Mechanics
-from concio.analysis.seismic.sliding_faces import GROUND
+from concio.analysis.seismic.macro_blocks import GROUND, MacroJoint, Mechanics
 from concio.kinematics.frames import turned, turned_left
 from concio.model.model import Tie
 

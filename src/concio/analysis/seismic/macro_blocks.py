@@ -17,7 +17,7 @@ from typing import Literal
 
 import numpy as np
 
-from concio.analysis.seismic.sliding_faces import GROUND, ends_of_sliding, ends_set_back, face_ends, face_of
+from concio.analysis.seismic.sliding_faces import ends_of_sliding, ends_set_back, face_ends, face_of
 from concio.contact.assembly import Assembly
 from concio.fem.discretisation import FIXED, RIGID
 from concio.kinematics.frames import turned_left
@@ -25,6 +25,9 @@ from concio.kinematics.rigid import motions, rigid_operator, swept
 from concio.problem.tolerances import AT_BOUND
 
 Array = np.ndarray
+
+GROUND = -1
+"""Number of the macro-block that does not move."""
 
 STILL = {2: 1e-7, 3: 1e-6}
 """Relative velocities below this share of the largest are none; in space they come from cone programmes."""

@@ -8,8 +8,8 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.analysis.seismic.linkage import Force
-from concio.analysis.seismic.macro_blocks import Mechanics
-from concio.analysis.seismic.sliding_faces import GROUND, face_ends, face_of
+from concio.analysis.seismic.macro_blocks import GROUND, Mechanics
+from concio.analysis.seismic.sliding_faces import face_ends, face_of
 from concio.contact.assembly import Assembly
 from concio.contact.face_points import FacePoints, Standing, Stated
 from concio.contact.separate import surroundings

@@ -19,9 +19,8 @@ from scipy.sparse.linalg import splu
 
 from concio.analysis.seismic.curve import FARTHEST, CapacityCurve, not_followed
 from concio.analysis.seismic.linkage import Force
-from concio.analysis.seismic.macro_blocks import Mechanics, carried
+from concio.analysis.seismic.macro_blocks import GROUND, Mechanics, carried
 from concio.analysis.seismic.macro_contacts import on_blocks, problem_of
-from concio.analysis.seismic.sliding_faces import GROUND
 from concio.analysis.seismic.tie_history import TieHistory
 from concio.contact.face_points import FacePoints, Standing, Stated, stated
 from concio.kinematics.rigid import motions

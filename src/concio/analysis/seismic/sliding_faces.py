@@ -9,9 +9,6 @@ from concio.kinematics.frames import turned_left
 
 Array = np.ndarray
 
-GROUND = -1
-"""Number of the macro-block that does not move."""
-
 SAME_LINE = 1e-5
 """Edges that lie within this share of the size of a body of one line are on it, and meet where they come so near."""
 
