@@ -16,6 +16,7 @@ import numpy as np
 import shapely
 
 from concio.contact.edges import MovingEdges, PlacedEdges
+from concio.contact.laws import RuleBook
 from concio.kinematics.frames import dot, turned_right
 from concio.model.interfaces.facing import facing_pairs
 
@@ -50,7 +51,7 @@ class Candidates:
 
 
 def find_candidates(
-    edges: MovingEdges, placed: PlacedEdges, skin: float, through: float = THROUGH, opening: float = 0.0
+    edges: MovingEdges, placed: PlacedEdges, skin: float, through: float = THROUGH, rules: RuleBook | None = None
 ) -> Candidates:
     """Return the candidates of placed edges.
 
@@ -62,24 +63,25 @@ def find_candidates(
         Distance within which edges are candidates [m].
     through : float
         Depth over the narrower body's width beyond which edges stand behind each other.
-    opening : float
-        Largest initial opening of a joint, by which edges may stand deeper [m].
+    rules : RuleBook, optional
+        Say by which initial openings edges may stand deeper; none without.
     """
     near = np.full(len(edges.width), skin)
     facing = facing_pairs(edges.as_edges(placed), near, -near, FACING)
     narrow = edges.width[facing.bodies].min(1)
-    keep = (facing.g_min <= 2 * skin) & (facing.g_max >= -through * narrow - opening)
+    deep = through * narrow + (0.0 if rules is None else rules.openings(*facing.bodies.T))
+    keep = (facing.g_min <= 2 * skin) & (facing.g_max >= -deep)
     a, b = facing.edges[keep].T
-    corner, edge = _corners(edges, placed, skin, opening, a, b)
+    corner, edge = _corners(edges, placed, skin, rules, a, b)
     return Candidates(a, b, corner, edge)
 
 
 def _corners(
-    edges: MovingEdges, placed: PlacedEdges, skin: float, opening: float, a: Array, b: Array
+    edges: MovingEdges, placed: PlacedEdges, skin: float, rules: RuleBook | None, a: Array, b: Array
 ) -> tuple[Array, Array]:
     """Return corners near edges that neither of their own edges faces."""
     corners = np.flatnonzero(edges.convex)
-    reach = skin + opening
+    reach = skin + (0.0 if rules is None else rules.widest)
     low, high = np.minimum(placed.start, placed.end) - reach, np.maximum(placed.start, placed.end) + reach
     points = shapely.points(placed.start[corners])
     found, near = shapely.STRtree(shapely.box(*low.T, *high.T)).query(points)
@@ -90,7 +92,8 @@ def _corners(
     distance = dot(placed.start[corner] - placed.start[edge], outward)
     back, ahead = -placed.tangent[edges.before[corner]], placed.tangent[corner]
     faces = (dot(back, outward) > -0.1) & (dot(ahead, outward) > -0.1)
-    faces &= (distance <= 2 * skin) & (distance >= -2 * skin - opening)
+    deep = 2 * skin + (0.0 if rules is None else rules.openings(edges.body[corner], edges.body[edge]))
+    faces &= (distance <= 2 * skin) & (distance >= -deep)
     corner, edge = corner[faces], edge[faces]
     count = len(edges.body)
     covered = np.concatenate([a * count + b, b * count + a])

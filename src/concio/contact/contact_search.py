@@ -90,7 +90,6 @@ class ContactSearch(ABC, Generic[P, L]):
         self.reference, self.surface = reference, surface
         self.skin = SKIN * float(np.median(surface.width[reference.free]))
         self.slack = 1e-9 * reference.disc.size
-        self.opening = max((rule.gap for rule in reference.model.rules), default=0.0)
         self.layout: L | None = None
 
     def update(self, placement: Placement) -> bool:

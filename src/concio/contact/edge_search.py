@@ -57,7 +57,7 @@ class EdgeSearch(ContactSearch[PlacedEdges, EdgeLayout]):
 
     def found(self, placed: PlacedEdges, old: EdgeLayout | None) -> tuple[EdgeLayout, bool]:
         """Return the layout where bodies stand; each is another one."""
-        found = find_candidates(self.edges, placed, self.skin, self.through, self.opening)
+        found = find_candidates(self.edges, placed, self.skin, self.through, self.reference.rules)
         toucher = Toucher.of(self.edges, found, SLIVER_SHARE, self.slack)
         touch = toucher.touch(placed)
         slots = self.maker.make(found, toucher, touch, placed)

@@ -106,6 +106,11 @@ class RuleBook:
     Parameters
     ----------
     model : Model
+
+    Attributes
+    ----------
+    widest : float
+        Largest initial opening of any rule [m].
     """
 
     def __init__(self, model: Model) -> None:
@@ -119,6 +124,11 @@ class RuleBook:
             self.sort = np.array([known.setdefault(key, len(known)) for key in keys])
         self._number = {name: k for k, name in enumerate(model.laws)}
         self._found: dict[tuple[int, int], tuple[int, float]] = {}
+        self.widest = max((rule.gap for rule in model.rules), default=0.0)
+
+    def openings(self, body_a: Array, body_b: Array) -> Array:
+        """Return the initial openings (i,) [m] of joints between bodies a and b (i,)."""
+        return self.find(body_a, body_b)[1] if self.widest else np.zeros(len(body_a))
 
     def find(self, body_a: Array, body_b: Array) -> tuple[Array, Array]:
         """Return the number of the law (i,) and the opening (i,) [m] between bodies a and b (i,).

@@ -15,6 +15,7 @@ import numpy as np
 from concio.contact.candidates import THROUGH
 from concio.contact.contact_search import ContactSearch, Layout
 from concio.contact.face_joints import FaceJoints
+from concio.contact.laws import RuleBook
 from concio.contact.moving_solids import MovingSolids, PlacedSolids
 from concio.contact.polygon_points import outside
 from concio.contact.rows import Rows
@@ -82,7 +83,7 @@ class SolidSearch(ContactSearch[PlacedSolids, SolidLayout]):
     def found(self, placed: PlacedSolids, old: SolidLayout | None) -> tuple[SolidLayout, bool]:
         """Return the layout where bodies stand; with the pairs of the old one only what is elastic differs."""
         toucher = find_solid_candidates(
-            self.solids, placed, self.fixed, self.skin, self.slack, self.same, self.opening
+            self.solids, placed, self.fixed, self.skin, self.slack, self.same, self.reference.rules
         )
         slots = self._slots(toucher)
         if old is not None:  # what stood for others goes on doing so
@@ -152,7 +153,7 @@ class SolidSearch(ContactSearch[PlacedSolids, SolidLayout]):
 
 
 def find_solid_candidates(
-    solids: MovingSolids, placed: PlacedSolids, fixed: Array, skin: float, slack: float, same: float, opening: float
+    solids: MovingSolids, placed: PlacedSolids, fixed: Array, skin: float, slack: float, same: float, rules: RuleBook
 ) -> SolidToucher:
     """Return the candidates of placed surfaces.
 
@@ -166,15 +167,15 @@ def find_solid_candidates(
         Distance within which features are candidates [m].
     slack, same : float
         See :class:`concio.contact.solid_touch.SolidToucher` [m].
-    opening : float
-        Largest initial opening of a joint, by which features may stand deeper [m].
+    rules : RuleBook
+        Say by which initial openings features may stand deeper.
     """
     a, b = near_bodies(solids, placed, fixed, skin)
     one, other = np.concatenate([a, b]), np.concatenate([b, a])
     corner, face = _products(solids.body, other, solids.face_body, one)
-    corner, face = _on_faces(solids, placed, *_of_finer(solids, corner, face), skin, opening)
+    corner, face = _on_faces(solids, placed, *_of_finer(solids, corner, face), skin, rules)
     first, second = _products(solids.edge_body, a, solids.edge_body, b)
-    edges, sign = _across(solids, placed, np.column_stack([first, second]), skin, opening)
+    edges, sign = _across(solids, placed, np.column_stack([first, second]), skin, rules)
     body_a = np.concatenate([solids.face_body[face], solids.edge_body[edges[:, 0]]])
     body_b = np.concatenate([solids.body[corner], solids.edge_body[edges[:, 1]]])
     joints, joint = _near_joints(solids, a, b), np.full(len(body_a), -1)
@@ -238,13 +239,14 @@ def _of_finer(solids: MovingSolids, corner: Array, face: Array) -> tuple[Array, 
 
 
 def _on_faces(
-    solids: MovingSolids, placed: PlacedSolids, corner: Array, face: Array, skin: float, opening: float
+    solids: MovingSolids, placed: PlacedSolids, corner: Array, face: Array, skin: float, rules: RuleBook
 ) -> tuple[Array, Array]:
     """Return corners that may come to stand on faces, of all pairs (n,)."""
     normal, start = placed.normal[face], placed.start[corner]
     away = start - placed.start[solids.face_start[face]]
     gap = dot(normal, away)
-    deep = THROUGH * np.minimum(solids.width[solids.body[corner]], solids.width[solids.face_body[face]]) + opening
+    one, other = solids.face_body[face], solids.body[corner]
+    deep = THROUGH * np.minimum(solids.width[one], solids.width[other]) + rules.openings(one, other)
     keep = (gap <= 2 * skin) & (gap >= -deep)
     corner, face, normal, away, start = corner[keep], face[keep], normal[keep], away[keep], start[keep]
     around = placed.start[solids.around[corner]] - start[:, None]
@@ -258,7 +260,7 @@ def _on_faces(
 
 
 def _across(
-    solids: MovingSolids, placed: PlacedSolids, edges: Array, skin: float, opening: float
+    solids: MovingSolids, placed: PlacedSolids, edges: Array, skin: float, rules: RuleBook
 ) -> tuple[Array, Array]:
     """Return edges that may come to cross, of all pairs (n, 2), and the signs of their normals (k,)."""
     ends = placed.start[solids.edge]
@@ -279,7 +281,8 @@ def _across(
         kept = edges[keep]
         way = np.full(len(kept), sign)
         crossing = Crossing.of(ends[kept], way)
-        deep = THROUGH * solids.width[solids.edge_body[kept]].min(axis=1) + opening
+        bodies = solids.edge_body[kept]
+        deep = THROUGH * solids.width[bodies].min(axis=1) + rules.openings(*bodies.T)
         close = (crossing.beyond <= 2 * skin) & (crossing.gap <= 2 * skin) & (crossing.gap >= -deep)
         found.append(kept[close])
         signs.append(way[close])

@@ -364,3 +364,19 @@ def test_a_block_falls_by_the_initial_gap_of_its_joint_however_thin_the_ground_i
     assert fallen[1, -1] == pytest.approx(gap, abs=5e-6)
     assert np.abs(fallen[:, :-1]).max() <= 1e-9
     assert found.certificate <= 1e-9
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_an_initial_gap_elsewhere_changes_nothing_here(dim):
+    """Bodies far away whose joints begin open by more than a block is thick fall; the pillar is shaken as without."""
+
+    def fallen(*, elsewhere):
+        pillar = concio.column(width=0.4, height=0.5, blocks=2, block="rigid", unit_weight=20.0)
+        away = concio.place(pillar, at=(30.0, 0.0), name="away")
+        rules = (*pillar.rules, concio.JointRule("joint", ("away-*", "away-*"), gap=0.3)) if elsewhere else pillar.rules
+        model = replace(concio.merge(pillar, away), rules=rules)
+        model = concio.extrude(model, 0.3) if dim == 3 else model
+        found = concio.dynamics(model, concio.Pulse("sine", 2.0, 0.3), duration=0.2, step=2e-3, adaptive=False)
+        return np.array([found.end.centre[i] for i, body in enumerate(model.bodies) if body.name in ("b01", "b02")])
+
+    assert np.abs(fallen(elsewhere=True) - fallen(elsewhere=False)).max() <= 1e-12
