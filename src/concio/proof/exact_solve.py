@@ -43,8 +43,6 @@ ROOM = 3
 AGREES = 32
 """Last bits of what is known of a solution that a fraction may miss."""
 FIRST_BITS = 256
-MANY = 500
-"""Entries of a matrix from which arrays of digits are faster than whole numbers of any length."""
 SINGULAR = 1e200
 """Correction, rows and columns scaled, from which a matrix counts as singular."""
 
@@ -72,7 +70,7 @@ def solve_exactly(rows: Sequence[Row], right: Sequence[Fraction]) -> list[Fracti
         factor = sla.splu(scaled)
     except RuntimeError:
         return None
-    residual = (_Plain if sum(map(len, whole)) < MANY else _InDigits)(whole, b)
+    residual = _Residual(whole, b)
     taken, wanted, last = 0, FIRST_BITS, math.inf
     while taken < MOST_BITS:
         if residual.vanishes:
@@ -94,37 +92,8 @@ def solve_exactly(rows: Sequence[Row], right: Sequence[Fraction]) -> list[Fracti
     raise LongFractionsError
 
 
-class _Plain:
-    """What is left of a right side, and the corrections so far, in whole numbers."""
-
-    def __init__(self, whole: Sequence[dict[int, int]], b: Sequence[int]) -> None:
-        self.whole, self.left = whole, b
-        self.largest = [max(abs(v) for v in row.values()) for row in whole]
-        self.sums = [0] * len(whole)
-
-    @property
-    def vanishes(self) -> bool:
-        """Whether nothing is left."""
-        return not any(self.left)
-
-    def shares(self) -> np.ndarray:
-        """Return what is left as a share of the largest entry of each row (n,)."""
-        return np.array([r / s for r, s in zip(self.left, self.largest, strict=True)])
-
-    def take(self, correction: np.ndarray) -> None:
-        """Take the matrix times a correction, of whole numbers, from what is left times 2**BITS."""
-        delta = [int(d) for d in correction]
-        self.sums = [(p << BITS) + d for p, d in zip(self.sums, delta, strict=True)]
-        products = [sum(v * delta[j] for j, v in row.items()) for row in self.whole]
-        self.left = [(r << BITS) - p for r, p in zip(self.left, products, strict=True)]
-
-    def parts(self) -> list[int]:
-        """Return the sum of all corrections as whole numbers, the last correction in units."""
-        return self.sums
-
-
-class _InDigits:
-    """The same in digits of ``BITS`` bits, from minus half to half: faster where there are many entries.
+class _Residual:
+    """What is left of a right side, and the corrections so far, in digits of ``BITS`` bits from minus half to half.
 
     Digits of all equations stand in arrays, the last ones first: a shift by ``BITS`` is one by a place, and digits of
     the matrix times those of a correction are whole numbers below 2**63.
