@@ -25,7 +25,7 @@ from concio.solvers.path.record import EventPath
 from concio.solvers.statics.associated_limit import LimitLoad
 from concio.solvers.statics.collapse_state import CollapseState
 from concio.solvers.statics.friction import FrictionBounds
-from concio.verdict.limit_verdict import limit_verdict
+from concio.verdict.limit_verdict import limit_verdict, without_limit
 from concio.verdict.limit_words import NOT_ASKED, limit_lines
 from concio.verdict.verdict import Verdict
 from concio.views import Shown, view
@@ -245,7 +245,9 @@ class LimitResult(Shown):
     def design(self) -> float:
         """Multiplier to design with: the least of what path, steps and collapse state say; ``nan`` where none does.
 
-        ``inf`` where certified steps grow without bound; 0 where all other loads alone are not carried.
+        ``inf`` where certified steps grow without bound; 0 where all other loads alone are not carried. Where the
+        structure wedges and no joint crushes it may be any large number: :attr:`verdict` says so, and that no limit was
+        found.
         """
         if self.dead in PROVEN_FAILURES:
             return 0.0
@@ -350,7 +352,7 @@ class LimitResult(Shown):
             "static_residual": a.residual,
             "mechanism_violation": None if a.mechanism is None else a.mechanism.violation,
             "checked": a.checked,
-            "design_multiplier": _finite(self.design),
+            "design_multiplier": None if without_limit(self) else _finite(self.design),
             "dead_load_alone": None if self.dead is None else self.dead.name.lower(),
             "grows_without_end": self.endless,
             "ties_whole_up_to": _finite(self.ties_whole),

@@ -16,6 +16,7 @@ from concio.report.html_parts import figure_html, page_html, verdict_html
 from concio.report.italian_page import Language, figure_in, page_in
 from concio.report.page import page
 from concio.report.sensitivity_part import sensitivity_html
+from concio.verdict.limit_verdict import without_limit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -70,7 +71,8 @@ def limit_html(found: LimitResult, language: Language = "en") -> str:
 def _numbers(found: LimitResult) -> str:
     """Return the multipliers in a table, each with what it is."""
     path, steps, state = found.path, found.steps, found.collapse_state
-    rows = [("design value", found.design), ("associated bound", found.associated.multiplier)]
+    rows = [] if without_limit(found) else [("design value", found.design)]
+    rows.append(("associated bound", found.associated.multiplier))
     if path is not None:
         shown = found.collapse_shown
         words = "Coulomb load path, collapse" if shown else "Coulomb load path, at least"

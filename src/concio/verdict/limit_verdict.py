@@ -95,7 +95,7 @@ def _outcome(found: LimitResult) -> tuple[Outcome, str]:
         return Outcome.HOLDS, "The load can grow without bound."
     if found.none_of_it:
         return Outcome.FAILS, f"No multiple of {named(found)} is carried."
-    if _without_limit(found):
+    if without_limit(found):
         return Outcome.INCOMPLETE, f"No limit of {named(found)} was found."
     if not math.isnan(found.design):
         return Outcome.HOLDS, f"Design with {max(found.design, 0.0):.6g} times {named(found)} at most."
@@ -172,7 +172,7 @@ def _design(found: LimitResult, question: Question) -> str:
             return f"{text}."
         return f"{text}, though {found.carried:.6g} is carried where the load grows from rest."
     kN = _forces(question, low, found.assembly.model.report)
-    if share := _without_limit(found):
+    if share := without_limit(found):
         return (
             f"No limit of {groups} was found: certified Coulomb states carry {low:.6g} times it ({kN}, {share:.3g} "
             "times all constant loads) as the load grows from rest. Only joints that never crush carry as much: give "
@@ -181,7 +181,7 @@ def _design(found: LimitResult, question: Question) -> str:
     return f"Design with {low:.6g} times {groups} ({kN}) at most: {_why(found)}."
 
 
-def _without_limit(found: LimitResult) -> float:
+def without_limit(found: LimitResult) -> float:
     """Return the multiplied loads carried over all constant ones where that says only that nothing crushes; else 0."""
     joints = np.asarray(found.assembly.pairs.interface) >= 0  # the fill beside a ring has caps of its own
     if math.isnan(found.design) or found.collapse_shown or np.isfinite(found.assembly.laws.cap[joints]).any():
@@ -335,7 +335,7 @@ def _limits(found: LimitResult) -> tuple[str, ...]:
             f"to their "
             "middle: it falls as contact points are added, and is not counted"
         )
-    if found.endless or _without_limit(found):
+    if found.endless or without_limit(found):
         told.append("no joint crushes in this model: a compressive strength would bound the load")
     told += (*_breakable(found), *crushing(assembly))
     if found.lent_compliance:

@@ -15,6 +15,7 @@ from concio import JointLaw, Load, Model, Polyhedron, Rigid
 from concio.analysis.limit_torsion import twisting
 from concio.cli.main import app
 from concio.problem.solution import PROVEN_FAILURES
+from concio.report.limit_page import _numbers
 from concio.verdict.italian import italian
 from concio.verdict.limit_words import limit_lines
 from concio.verdict.verdict import Outcome
@@ -115,9 +116,12 @@ def test_what_only_joints_that_never_crush_carry_is_no_design_value(voussoirs: i
     assert "Design with" not in found.verdict.sentence
     assert "give them a compressive strength" in found.verdict.answer
     assert {piece.language for piece in italian(found.verdict.answer)} == {"it"}
+    assert found.summary()["design_multiplier"] is None
+    assert "design value</th>" not in _numbers(found)
     law = 'friction = { friction = 0.6, compressive_strength = "5 MPa" }'
     soft = concio.limit(concio.loads(BRIDGE.format(voussoirs=voussoirs, law=law)), path=False, steps=True, search=False)
     assert soft.verdict.headline.startswith("Design with")
+    assert "design value</th>" in _numbers(soft)
     assert soft.design * 186.4 <= 2 * 5e3 * 0.45 * 4.0
 
 
