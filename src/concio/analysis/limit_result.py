@@ -25,8 +25,9 @@ from concio.solvers.path.record import EventPath
 from concio.solvers.statics.associated_limit import LimitLoad
 from concio.solvers.statics.collapse_state import CollapseState
 from concio.solvers.statics.friction import FrictionBounds
-from concio.verdict.limit_verdict import limit_verdict, without_limit
+from concio.verdict.limit_verdict import limit_verdict
 from concio.verdict.limit_words import NOT_ASKED, limit_lines
+from concio.verdict.no_limit import without_limit
 from concio.verdict.verdict import Verdict
 from concio.views import Shown, view
 

@@ -16,7 +16,7 @@ from concio.report.html_parts import figure_html, page_html, verdict_html
 from concio.report.italian_page import Language, figure_in, page_in
 from concio.report.page import page
 from concio.report.sensitivity_part import sensitivity_html
-from concio.verdict.limit_verdict import without_limit
+from concio.verdict.no_limit import without_limit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

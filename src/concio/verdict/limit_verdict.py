@@ -13,6 +13,7 @@ from concio.display import Units, counted
 from concio.problem.solution import PROVEN_FAILURES, Status
 from concio.verdict.attention import MOTION_TURNED, attention, joints_not_made
 from concio.verdict.crushing import crushing
+from concio.verdict.no_limit import SAME, without_limit
 from concio.verdict.question import Acting, Question, question_of
 from concio.verdict.step_verdict import REGULARISED, SEVERAL, loads_in_short
 from concio.verdict.unseen import unseen
@@ -26,12 +27,6 @@ DEAD_NOT_CARRIED = "the dead load alone cannot be carried: a mechanism proves it
 
 MOST_TIES = 5
 """More ties than this are not named."""
-
-SAME = 1e-6
-"""Multipliers closer than this, relative, are one number in words."""
-
-HUGE = 1e3
-"""Multiplied loads over all constant ones from which on a number says only that nothing crushes."""
 
 LOCKED = (
     "the bound of associated friction is locked, which says nothing about Coulomb friction: there sliding joints "
@@ -175,26 +170,10 @@ def _design(found: LimitResult, question: Question) -> str:
     if share := without_limit(found):
         return (
             f"No limit of {groups} was found: certified Coulomb states carry {low:.6g} times it ({kN}, {share:.3g} "
-            "times all constant loads) as the load grows from rest. Only joints that never crush carry as much: give "
-            "them a compressive strength before a design value is taken."
+            "times all constant loads of their part) as the load grows from rest. Only joints that never crush carry "
+            "as much: give them a compressive strength before a design value is taken."
         )
     return f"Design with {low:.6g} times {groups} ({kN}) at most: {_why(found)}."
-
-
-def without_limit(found: LimitResult) -> float:
-    """Return the multiplied loads carried over all constant ones where that says only that nothing crushes; else 0."""
-    joints = np.asarray(found.assembly.pairs.interface) >= 0  # the fill beside a ring has caps of its own
-    if math.isnan(found.design) or found.collapse_shown or np.isfinite(found.assembly.laws.cap[joints]).any():
-        return 0.0
-    if found.design < found.carried * (1 - SAME) or not found.associated.locked:
-        return 0.0
-    acting = limit_question(found).acting
-    live, constant = (
-        sum(float(np.linalg.norm(a.force)) or a.size for a in acting if a.role == role)
-        for role in ("multiplied", "constant")
-    )
-    share = found.design * live / constant if constant > 0 else 0.0
-    return share if share > HUGE else 0.0
 
 
 def _why(found: LimitResult) -> str:

@@ -248,14 +248,14 @@ def thickness_words(model: Model) -> tuple[str, ...]:
 
 def resultants(assembly: Loaded) -> dict[str, list[float]]:
     """Return the resultant (x, y) or (x, y, z) of each load group [kN]."""
-    return {group: _forces(assembly, f).sum(0).tolist() for group, f in assembly.loads.items()}
+    return {group: body_forces(assembly, f).sum(0).tolist() for group, f in assembly.loads.items()}
 
 
 def _sizes(assembly: Loaded) -> dict[str, float]:
-    return {group: float(np.linalg.norm(_forces(assembly, f), axis=1).sum()) for group, f in assembly.loads.items()}
+    return {group: float(np.linalg.norm(body_forces(assembly, f), axis=1).sum()) for group, f in assembly.loads.items()}
 
 
-def _forces(assembly: Loaded, f: np.ndarray) -> np.ndarray:
+def body_forces(assembly: Loaded, f: np.ndarray) -> np.ndarray:
     """Return the resultant (bodies, d) of the loads on each body [kN]."""
     disc = assembly.disc
     d = disc.dim

@@ -72,7 +72,7 @@ def unseen_bodies(
 ) -> tuple[str, ...]:
     """Return the names of the bodies that no certificate can see at some of the given factors, in their order."""
     model, offsets = loaded.model, loaded.disc.offsets
-    part = _numbers(groups, len(model.bodies)) if groups else _parts(model, loaded.detection)
+    part = _numbers(groups, len(model.bodies)) if groups else connected(model, loaded.detection)
     found: set[int] = set()
     for at in factors:
         f = np.zeros(int(offsets[-1]))
@@ -92,8 +92,8 @@ def _numbers(groups: Sequence[Sequence[int]], count: int) -> np.ndarray:
     return found
 
 
-def _parts(model: Model, detection: Detection) -> np.ndarray:
-    """Return the number of the connected part of each body (B,); fixed bodies connect nothing."""
+def connected(model: Model, detection: Detection) -> np.ndarray:
+    """Return the number of the connected part of each body (B,); what is fixed connects nothing."""
     free = [body.kind != "fixed" for body in model.bodies]
     number = {body.name: k for k, body in enumerate(model.bodies)}
     links = [(i.a, i.b) for i in detection.interfaces]

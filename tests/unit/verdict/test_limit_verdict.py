@@ -11,7 +11,7 @@ import pytest
 from typer.testing import CliRunner
 
 import concio
-from concio import JointLaw, Load, Model, Polyhedron, Rigid
+from concio import JointLaw, JointRule, Load, Model, Polyhedron, Rigid
 from concio.analysis.limit_torsion import twisting
 from concio.cli.main import app
 from concio.problem.solution import PROVEN_FAILURES
@@ -123,6 +123,26 @@ def test_what_only_joints_that_never_crush_carry_is_no_design_value(voussoirs: i
     assert soft.verdict.headline.startswith("Design with")
     assert "design value</th>" in _numbers(soft)
     assert soft.design * 186.4 <= 2 * 5e3 * 0.45 * 4.0
+
+
+@pytest.mark.parametrize("size", sample([1e3], [0.1, 1e3], [1e-3, 0.1, 10.0, 1e3]))
+@pytest.mark.parametrize("strength", [None, "5 MPa"])
+def test_what_stands_far_away_does_not_make_a_design_value(size: float, strength: str | None) -> None:
+    """A block on ground of its own, as heavy as 4e9 kN, whose joint may crush: the ratio was over all of the model."""
+    hard = concio.loads(BRIDGE.format(voussoirs=8, law="friction = 0.6"))
+    ground = box("far ground", 1e4 - size, 1e4 + size, -size, 0, kind="fixed")
+    block = box("far block", 1e4 - size / 2, 1e4 + size / 2, 0, 2 * size, kind="rigid")
+    law = JointLaw(0.6, compressive_strength=None if strength is None else 1e6 * size)
+    both = replace(
+        hard,
+        bodies=(*hard.bodies, replace(block, material="far"), replace(ground, material="far")),
+        materials={**hard.materials, "far": Rigid(20.0)},
+        laws={**hard.laws, "far": law},
+        rules=(*hard.rules, JointRule("far", between=("far ground", "far block"))),
+    )
+    alone, beside = (concio.limit(model, path=False, steps=True, search=False) for model in (hard, both))
+    assert beside.verdict.headline == alone.verdict.headline == "No limit of 'live' was found."
+    assert beside.verdict.outcome is Outcome.INCOMPLETE
 
 
 @pytest.mark.parametrize("seed", range(sample(2, 8, 16)))
