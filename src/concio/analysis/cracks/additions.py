@@ -3,7 +3,8 @@
 The simplest causes are sought, and what contains one is not tried. A small motion beside a large one is then passed
 over where the errors of all measurements together leave room for it. So each further candidate is tested by itself: of
 a linear model the misfit falls by chi2 with one degree of freedom where the motion is not there. The chance of naming
-any that is not there is that of the confidence, shared among the candidates (Bonferroni). The best is a cause
+any that is not there is that of the confidence, shared among the candidates (Bonferroni). So nothing is named where
+there is one measurement more than motions: the misfit of the cause itself is below that quantile. The best is a cause
 like any other, with intervals of its motions and what it predicts.
 """
 
@@ -63,7 +64,7 @@ def additions_of(fitter: Fitter, cause: Cause, names: Sequence[str], confidence:
     others = [c for c in range(len(names)) if c not in cause.chosen]
     kept = np.ones(len(cause.residual), dtype=bool)
     kept[list(cause.left_out)] = False
-    if not others or not cause.chosen or int(kept.sum()) <= len(cause.chosen) + 1:
+    if not others or not cause.chosen:
         return ()
     clear = allowed(1, 1.0 - (1.0 - confidence) / len(others))
     here = Fit(cause.chosen, cause.motions, cause.prediction, cause.residual, cause.slope, kept)
