@@ -51,11 +51,34 @@ def test_equations_that_determine_all_have_the_answer_of_a_dense_solve(seed: int
     assert found / columns == pytest.approx(np.linalg.solve(A, wanted) / columns, rel=1e-6, abs=1e-7)
 
 
-def test_a_structure_that_can_move_has_no_derivative() -> None:
-    """No equation holds the second displacement."""
-    A = np.array([[2.0, 0.0, 1.0], [0.0, 0.0, 0.0], [1.0, 0.0, 3.0]])
+@pytest.mark.parametrize("size", [2.0**-40, 2.0**40])
+def test_answers_are_in_proportion_and_contradictions_are_seen_at_any_size(size: float) -> None:
+    """A factor of two changes no digit; one of many equations that contradicts is enough, however small all are."""
+    columns = np.array([*3 * [1e-3], *4 * [20.0]])
+    A = shared(1, columns)
+    A[0, 3:], A[3, :3] = 0.0, 0.0  # as in a model: not every unknown stands in every equation
+    equations = _Equations(sp.csr_array(A), columns, 3)
+    wanted = A @ (columns * np.arange(1.0, 8.0))
+    np.testing.assert_array_equal(equations.answer(size * wanted), size * equations.answer(wanted))
+    np.testing.assert_array_equal(equations.answer(0.0 * wanted)[:5], np.zeros(5))
+    wanted[6] += 1e-5 * np.abs(wanted).max()
+    with pytest.raises(InputError, match="do not determine"):
+        equations.answer(size * wanted)
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.7])
+def test_a_structure_that_can_move_has_no_derivative(turn: float) -> None:
+    """One body is held by a spring in one direction only, which need not be that of an unknown; another is held."""
+    c, s = np.cos(turn), np.sin(turn)
+    R = np.array([[c, -s], [s, c]])
+    A = np.zeros((4, 4))
+    A[:2, :2] = R @ np.diag([1.0, 0.0]) @ R.T
+    A[2:, 2:] = [[2.0, 1.0], [1.0, -3.0]]
     with pytest.raises(InputError, match="can move"):
-        _Equations(sp.csr_array(A), np.ones(3), 2).answer(np.ones(3))
+        _Equations(sp.csr_array(A), np.ones(4), 3).answer(np.ones(4))
+    A[:2, :2] += 0.5 * np.eye(2)
+    found = _Equations(sp.csr_array(A), np.ones(4), 3).answer(np.ones(4))
+    assert pytest.approx(np.linalg.solve(A, np.ones(4))) == found
 
 
 def pillar(blocks: int, push: float = 0.0) -> concio.Model:

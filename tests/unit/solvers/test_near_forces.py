@@ -9,6 +9,7 @@ import concio
 from concio.analysis.lent_compliance import lend
 from concio.analysis.path import Stage, run_path
 from concio.problem.certificate import certify
+from concio.solvers.algebra.block_factor import BlockFactor
 from concio.solvers.interior import engine
 from concio.solvers.methods import find
 from concio.solvers.path.near_forces import Nearby, needed, solve_near
@@ -125,6 +126,27 @@ def test_the_next_step_is_found_from_the_last_without_an_iteration(dim):
         assert found.factorisations < fresh.factorisations / 2
         for mine, other in zip(state_of(found), state_of(fresh), strict=True):
             assert np.abs(mine - other).max() <= 1e-9 * np.abs(other).max()
+
+
+@pytest.mark.parametrize("kept", [False, True])
+def test_a_step_counts_what_it_factorises_and_no_other_step(panel, monkeypatch, kept):
+    """The softened step and the one without its compliance; what earlier steps factorised with the same is theirs."""
+    made, nearby = [], Nearby() if kept else None
+    factorise = BlockFactor.factorise
+
+    def counted(self, *args, **options):
+        made.append(self)
+        return factorise(self, *args, **options)
+
+    monkeypatch.setattr(BlockFactor, "factorise", counted)
+    last = state_of(engine.solve(panel.problem({"dead": 1.0, "live": 0.5 * PUSH})))
+    for live in (0.5, 0.55, 0.7, -0.7):  # the last one so far away that a try is given up
+        made.clear()
+        found = solve_near(panel.problem({"dead": 1.0, "live": live * PUSH}), *last, nearby=nearby)
+        assert found.solved
+        assert found.factorisations == len(made)
+        last = state_of(found)
+    assert made
 
 
 def test_a_state_far_away_is_no_excuse_for_a_wrong_answer(panel):

@@ -45,8 +45,8 @@ from concio.solvers.interior.point import CONE, Point, Residuals
 START = 10.0
 """Size of forces, gaps and slips at the start, in scaled units."""
 
-NEAR = 1.0
-"""How far inside the cones a run begins near a known state, in scaled units."""
+NEAR, WITHIN = 1.0, 0.1
+"""How far inside the cones a run begins near a known state, in scaled units; so far at least from where pairs slide."""
 
 SHARE = 0.99
 """Share of the step to the boundary that is taken."""
@@ -164,13 +164,16 @@ class InteriorPoint:
     def near(self, u: Array, t: Array) -> Point:
         """Return a point inside the cones around displacements (N,) and forces (m, d) that obey the joint laws nearly.
 
-        Normal forces, gaps and slip bounds are larger by :data:`NEAR`; friction is no larger than its strength was.
+        Normal forces, gaps and slip bounds are larger by :data:`NEAR`, but so far from the cap, or half of it; friction
+        is no larger than its strength was, and below what it is.
         """
         s = self.problem
-        y, t_n, slip = s.position(u, t), np.clip(t[:, 0], 0.0, s.cone.cap), np.linalg.norm(t[:, 1:], axis=1)
+        y, t_n, pull = s.position(u, t), np.maximum(t[:, 0], 0.0), np.linalg.norm(t[:, 1:], axis=1)
+        before = s.cone.linear_strength(np.minimum(t_n, s.cone.cap))
+        t_n = np.minimum(t_n + NEAR, s.cone.cap - np.minimum(NEAR, 0.5 * s.cone.cap))
         strength = s.cone.linear_strength(t_n)
-        kept = np.minimum(1.0, strength / np.where(slip > 0, slip, 1.0))
-        t_n = np.where(s.cone.capped, np.minimum(t_n + NEAR, 0.5 * (t_n + s.cone.cap)), t_n + NEAR)
+        strength = np.minimum(before, strength - np.minimum(WITHIN, 0.5 * strength))
+        kept = np.minimum(1.0, strength / np.where(pull > 0, pull, 1.0))
         eta = y.copy()
         eta[:, 0] = np.linalg.norm(y[:, 1:], axis=1) + NEAR
         return Point(

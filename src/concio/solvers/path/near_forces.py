@@ -109,6 +109,11 @@ class Nearby:
         self._kept[which] = scale(problem) if kept is None else kept.renewed(problem)
         return self._kept[which]
 
+    def made(self, which: str = "as it is") -> int:
+        """Return how many factorisations were made so far with such stiffnesses."""
+        kept = self._kept.get(which)
+        return 0 if kept is None else kept.factor.made
+
     def answer(self, problem: ContactProblem, begin: State, which: str = "as it is") -> Solution | None:
         """Return the answer of a problem whose states differ in few pairs from those of a point, if it has one.
 
@@ -122,9 +127,9 @@ class Nearby:
         """
         if not any(part.any() for part in begin):
             return None
+        made = self.made(which)
         s = self.scaled(problem, which)
-        made, point = s.factor.made, s.bring(*begin)
-        run = Run(s)
+        point, run = s.bring(*begin), Run(s)
         if problem.dim == 2:
             found = run.settle(*point, flips=FLIPS)
         else:
@@ -170,8 +175,13 @@ def solve_near(
     plane, begin = problem.dim == 2, begin or (u, t_n, t_t)
 
     def one(step: ContactProblem, which: str) -> Solution:
+        before = 0 if nearby is None else nearby.made(which)
         found = None if nearby is None else nearby.answer(step, begin, which)
-        return found or engine.solve(step, homotopy=False, starts=starts if plane else None, progress=progress)
+        if found is not None:
+            return found
+        tried = 0 if nearby is None else nearby.made(which) - before
+        found = engine.solve(step, homotopy=False, starts=starts if plane else None, progress=progress)
+        return replace(found, factorisations=found.factorisations + tried)
 
     if not needed(problem):
         return one(problem, "as it is")
@@ -179,8 +189,8 @@ def solve_near(
     first = one(soft, "softened")
     if not first.solved:
         return replace(first, method=NAME)
+    made = 0 if nearby is None else nearby.made()
     s = scale(problem) if nearby is None else nearby.scaled(problem)
-    made = s.factor.made
     v, p = s.bring(first.displacement, first.normal_force, first.friction_force)
     if plane:
         found = Settler(s).settle(s, v, p, read_states(s.renewed(soft), v, p), least=False)
