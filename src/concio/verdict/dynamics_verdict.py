@@ -36,6 +36,7 @@ HEADLINES = {
     Outcome.INCOMPLETE: "The motion was not followed to its end.",
 }
 NO_START = "Whether it stands before the ground moves was not shown."
+NOTHING_LEFT = "The structure comes to rest; nothing of the motion of the ground was left to act."
 CAPPED = "Whether contacts at corners and edges crush was not checked."
 SHORT = "no equilibrium was found from where its supports have moved"
 """Begins the note of a motion whose supports did not get to where they were asked to be."""
@@ -96,7 +97,14 @@ def _headline(found: DynamicsResult, outcome: Outcome) -> str:
         return "What happens to some bodies could not be resolved."
     if found.stands is False and not _begins_nowhere(found):
         return "The structure does not stand at the start."
+    if outcome is Outcome.HOLDS and _nothing_left(found):
+        return NOTHING_LEFT
     return NO_START if _begins_nowhere(found) and outcome is Outcome.INCOMPLETE else HEADLINES[outcome]
+
+
+def _nothing_left(found: DynamicsResult) -> bool:
+    """Return whether the ground had come to rest before this motion, which goes on from another one, began."""
+    return bool(found.asked) and found.begun > 0 and found.begun >= found.ground_ends * (1 - 1e-9)
 
 
 def _begins_nowhere(found: DynamicsResult) -> bool:
@@ -137,7 +145,10 @@ def _asked(found: DynamicsResult) -> str:
     ground = found.asked or "no motion of the ground"
     peak = f", largest acceleration {number(found.ground_peak / GRAVITY, 4)} g" if found.asked else ""
     time = "until rest or a fall" if found.stated is None else f"for {number(found.stated, 6)} s"
-    start = "from where an earlier motion ended" if found.begun > 0 else "from equilibrium"
+    start = "from equilibrium"
+    if found.begun > 0:
+        start = f"from where an earlier motion ended, at {number(found.begun, 6)} s of the motion of the ground,"
+        start = start if found.asked else "from where an earlier motion ended"
     if found.stands is None and not found.begun > 0:
         start = "from the bodies as described"
     return f"the motion {start} {time} under {ground}{peak}"
@@ -221,5 +232,9 @@ def _unchecked(found: DynamicsResult, outcome: Outcome) -> tuple[str, ...]:
 
 def _noticed(found: DynamicsResult) -> tuple[str, ...]:
     """Return what asks for attention in the motion itself."""
+    late = (
+        "the motion of the ground is over before this one begins: its time is that of the earlier motion; put zeros "
+        "before a record that is to begin later",
+    )
     odd = (f"the energy balance is off by {_of_what(found)}: take a smaller step",)
-    return (*found.notes, *(odd if found.energy.error > CLOSES else ()))
+    return (*found.notes, *(late if _nothing_left(found) else ()), *(odd if found.energy.error > CLOSES else ()))

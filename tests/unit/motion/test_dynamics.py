@@ -13,6 +13,7 @@ import concio.solvers.stepping.solver as step_solver
 from concio.analysis.motion.dynamics_result import Ending
 from concio.analysis.motion.state import MotionState
 from concio.contact.reference import Reference
+from concio.verdict.verdict import Outcome
 from motion_models import G, standing
 from samples import first, sample
 
@@ -112,13 +113,42 @@ def test_a_motion_goes_on_from_where_it_ended():
 
 
 def test_a_motion_that_may_stop_at_rest_waits_for_the_ground():
-    """Begun at 0.2 s, under a pulse of 0.3 s too weak to move anything: not before 0.5 s, and at once then."""
+    """Begun at 0.2 s, under a pulse too weak to move anything that ends at 0.3 s: not before, and at once then."""
     options = {"step": 5e-3, "gravity": G, "adaptive": False}
     begun = concio.dynamics(standing(), duration=0.2, **options).end
     pulse = concio.Pulse("half sine", 0.1 * G, 0.3)
     found = concio.dynamics(standing(), pulse, 1.0, start=begun, stop_at_rest=True, **options)
     assert found.ending is Ending.AT_REST
-    assert found.end.time == pytest.approx(0.5, abs=0.02)
+    assert found.end.time == pytest.approx(0.3, abs=0.02)
+
+
+@pytest.mark.long
+def test_a_motion_in_two_runs_is_that_of_one():
+    """The time of the ground goes on: the second run ends with the record, and not a first run's length later."""
+    rng = np.random.default_rng(3)
+    record = concio.Record(np.r_[0.0, 5.0 * rng.normal(size=18), 0.0], 0.05)
+    options = {"step": 5e-3, "gravity": G, "adaptive": False}
+    whole = concio.dynamics(standing(friction=0.3), record, 2.0, **options)
+    first = concio.dynamics(standing(friction=0.3), record, 0.5, **options)
+    second = concio.dynamics(standing(friction=0.3), record, 1.5, start=first.end, **options)
+    assert second.end.centre == pytest.approx(whole.end.centre, abs=1e-9)
+    assert second.ground_ends == whole.ground_ends == pytest.approx(0.95)
+    assert second.verdict.outcome is whole.verdict.outcome is Outcome.HOLDS
+    assert second.verdict.unchecked == ()
+
+
+def test_a_record_that_is_over_before_the_motion_goes_on_is_not_withstood():
+    """1 g for 0.3 s overturns the block; put on 0.2 s after its end nothing of it acts, and no verdict may say so."""
+    strong = concio.Record(np.r_[0.0, 1.0, 1.0, 0.0] * G, 0.1)
+    options = {"step": 5e-3, "gravity": G, "adaptive": False}
+    assert concio.dynamics(standing(), strong, **options).verdict.outcome is Outcome.FAILS
+    begun = concio.dynamics(standing(), duration=0.5, **options).end
+    late = concio.dynamics(standing(), strong, start=begun, **options).verdict
+    assert "withstands" not in late.headline
+    assert "nothing of the motion of the ground was left" in late.headline
+    assert any("is over before this one begins" in line for line in late.attention)
+    shifted = concio.Record(np.r_[np.zeros(6), strong.values], 0.1)
+    assert concio.dynamics(standing(), shifted, start=begun, **options).verdict.outcome is Outcome.FAILS
 
 
 def test_the_drift_told_is_the_deepest_of_all_steps():

@@ -101,7 +101,8 @@ def dynamics(
         Whether the ground's acceleration acts on the bodies, which are seen from the ground, or the fixed bodies are
         moved.
     start : {"equilibrium", "as described"} or MotionState
-        Equilibrium under the loads if there is one, the bodies as described, or a state of an earlier motion.
+        Equilibrium under the loads if there is one, the bodies as described, or a state of an earlier motion: its
+        time goes on, and that of the motion of the ground with it.
     velocities : mapping of body to (v_x, v_y, spin), optional
         Initial velocities [m/s, m/s, rad/s]; in space (v_x, v_y, v_z) or with (w_x, w_y, w_z) behind.
     restitution : float
@@ -157,7 +158,8 @@ def dynamics(
         msg = "the ground does not move, and no duration is given"
         hint = "give a record or a pulse ([motion] in a model file, --pulse), or a duration to follow the bodies for"
         raise InputError(msg, hint=hint)
-    shown = stated or ground.duration
+    left = max(ground.duration - (start.time if isinstance(start, MotionState) else 0.0), 0.0)
+    shown = stated or left or AFTER
     step = step_asked(step, ground, shown)
     check_length(shown, step)
     stop_at_rest = stated is None if stop_at_rest is None else stop_at_rest
@@ -169,7 +171,7 @@ def dynamics(
             msg = f"there is no load group '{group}'"
             raise InputError(msg, hint="groups: " + ", ".join(reference.model.load_groups))
     run = _Run(
-        reference, ground, base, chosen, scheme, near.points(points), shown + (0.0 if stated else AFTER), step,
+        reference, ground, base, chosen, scheme, near.points(points), stated or left + AFTER, step,
         adaptive, progress, stated, engine,
     )  # fmt: skip
     run.notes += ground.attention
@@ -298,7 +300,7 @@ class _Run:
                 fell = self._fell()
                 if stop_overturned and fell is not None:
                     return fell
-                over = self.state.time - start > self.ground.duration
+                over = self.state.time > self.ground.duration
                 if all([m.watch.calm(m.state) for m in self.movers]) and over and stop_at_rest and self._still():
                     self.rests = True
                     return Ending.AT_REST
@@ -306,7 +308,7 @@ class _Run:
                 if told or interruption.wanted:
                     return Ending.STOPPED
         self.rests = all([m.watch.calm(m.state) for m in self.movers]) and self._still()
-        if not self.rests and not self.fallen and self.state.time - start >= self.ground.duration:
+        if not self.rests and not self.fallen and self.state.time >= self.ground.duration:
             self.fallen = [words for m in self.movers for words in m.watch.passed(m.state)]
         return Ending.COMPLETE
 
@@ -391,6 +393,6 @@ class _Run:
             notes=(*self.notes, *(mover.outran for mover in self.movers if mover.outran)),
             lent_compliance=max(mover.lent for mover in self.movers), asked=self.ground.words,
             begun=self.started, stated=self.stated, stands=self.stands, refuted=self.refuted,
-            fallen=tuple(self.fallen), rests=self.rests, ground_ends=self.started + self.ground.duration,
+            fallen=tuple(self.fallen), rests=self.rests, ground_ends=max(self.started, self.ground.duration),
             structures=tuple(tuple(mover.structure.bodies.tolist()) for mover in self.movers),
         )  # fmt: skip
