@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from concio.display import Units, counted, number
 from concio.model.self_weight import weight_groups, weightless
 from concio.problem.tolerances import CERTIFIED
@@ -29,6 +31,8 @@ HEADLINES: dict[Outcome, str] = {
     Outcome.UNDECIDED: "The path could not be continued to its end.",
 }
 """The answer in a few words."""
+NO_LOAD = "No load acts: what is imposed is followed to the end of the path."
+"""The answer where no stage applies a force: nothing is carried."""
 
 HISTORY = "with Coulomb friction the order of the stages matters: another load history may end in another state"
 SUDDEN = "a tie that breaks loses its force at once: the dynamic effect is not computed"
@@ -49,7 +53,7 @@ def path_verdict(found: PathResult) -> Verdict:
         outcome=outcome,
         status=_status(found, outcome),
         question=_question(found),
-        headline=HEADLINES[outcome] if found.certified else "The states that were found do not pass their check.",
+        headline=_headline(found, outcome),
         answer=_answer(found, outcome),
         proof=path_proof(found),
         meaning=_meaning(found, outcome),
@@ -58,6 +62,19 @@ def path_verdict(found: PathResult) -> Verdict:
         attention=odd,
         next_steps=(*first, *_next_steps(found, outcome)),
     )
+
+
+def _headline(found: PathResult, outcome: Outcome) -> str:
+    if not found.certified:
+        return "The states that were found do not pass their check."
+    return NO_LOAD if outcome is Outcome.HOLDS and _no_load(found) else HEADLINES[outcome]
+
+
+def _no_load(found: PathResult) -> bool:
+    """Return whether no group that a stage applies has a force, and no tie is prestressed: the path carries nothing."""
+    applied = {g for step in found.steps for g, v in step.factors.items() if v}
+    prestressed = any(tie.prestress for tie in found.assembly.model.ties)
+    return not prestressed and not any(np.abs(found.assembly.loads[g]).any() for g in applied & {*found.assembly.loads})
 
 
 def _outcome(found: PathResult) -> Outcome:
@@ -161,6 +178,8 @@ def _ending(found: PathResult, outcome: Outcome) -> str:
         if found.short:
             return ""
         whole = "The stage is" if len(found.stages) == 1 else f"All {len(found.stages)} stages are"
+        if _no_load(found):
+            return f"{whole} followed to the end, and no load acts in any."
         light = ", without self-weight" if found.steps and len(found.stages) - 1 in found.weightless_stages else ""
         return f"{whole} carried to the end{light}."
     stage, most = found.stages[len(found.outcomes) - 1].name, _most(found)

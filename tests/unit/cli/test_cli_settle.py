@@ -162,3 +162,15 @@ def test_a_path_reports_the_share_of_all_its_stages(method: Literal["events", "s
     for note in told:
         share.after(note)
     assert share.best == pytest.approx(done[-1])
+
+
+@pytest.mark.parametrize("carried", [True, False])
+def test_where_no_load_acts_nothing_is_carried(tmp_path: Path, carried: bool) -> None:
+    """The headline was 'The loads are carried' for blocks without weight between walls that only move."""
+    weight = '[[loads]]\nkind = "weight"\nvalue = [0, -1]\n'
+    assert weight in SQUEEZED
+    file = tmp_path / "model.toml"
+    file.write_text(SQUEEZED if carried else SQUEEZED.replace(weight, ""), encoding="utf-8")
+    verdict = concio.settle(concio.load(file), "squeeze").verdict
+    assert ("carried" in verdict.headline) == ("carried" in verdict.answer) == carried
+    assert ("No load acts" in verdict.headline) == (not carried)
