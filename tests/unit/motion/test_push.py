@@ -319,3 +319,30 @@ def test_a_push_that_another_structure_ends_does_so_on_its_own_curve():
     assert 0.08 < found.multiplier[-1] <= concio.push(model_of(floor, narrow, law=law, loads=(weight(),))).peak
     flexibility = found.displacement[1:] / found.multiplier[1:]
     assert flexibility == pytest.approx(flexibility[0], rel=5e-4)
+
+
+
+
+@pytest.mark.parametrize("dim", [2, pytest.param(3, marks=pytest.mark.long)])
+@pytest.mark.parametrize("blocks", sample([3], [1, 3], [1, 2, 3, 6]))
+def test_joints_that_are_open_at_first_close_before_the_push(blocks: int, dim: int) -> None:
+    """It 'did not stand': the first step went through the joint. Half the width over the height of the mass, sunk."""
+    wide, high, gap, law = 0.5, 0.4, 0.03, concio.JointLaw(0.6)
+    boxes = [("ground", (-3.0, -1.0), (3.0, 0.0), "fixed")]
+    boxes += [(f"b{k}", (0.0, k * high), (wide, (k + 1) * high), "rigid") for k in range(blocks)]
+    bodies: tuple[concio.Body | concio.Polyhedron, ...]
+    if dim == 2:
+        bodies = tuple(box(name, low[0], up[0], low[1], up[1], kind=kind) for name, low, up, kind in boxes)
+    else:
+        bodies = tuple(
+            concio.Polyhedron.box(name, (low[0], 0.0, low[1]), (up[0], 0.7, up[1]), kind=kind)
+            for name, low, up, kind in boxes
+        )
+    model = concio.Model(
+        bodies, {"block": concio.Rigid(20.0)}, {"joint": law}, rules=(concio.JointRule("joint", gap=gap),),
+        loads=(concio.Load("weight", (0.0, -1.0) if dim == 2 else (0.0, 0.0, -1.0)),),
+    )  # fmt: skip
+    assert concio.solve(model).solved
+    pushed = concio.push(model, direction=(1.0, 0.0, 0.0)[:dim], until=0.02)
+    middle = blocks * high / 2 - (blocks - 1) * gap / 2
+    assert pushed.multiplier.max() == pytest.approx(min(0.6, wide / 2 / middle), rel=1e-4)

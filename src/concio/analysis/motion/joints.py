@@ -202,14 +202,14 @@ class Joints:
         moved : (m, d-1) array
             Tangential displacement since the last equilibrium [m].
         speed : float
-            Distance within which pairs count as near [m].
+            Distance within which pairs count as near, beside what they are open at first [m].
         """
         zero = np.zeros(len(slots))
         gap, area, bonded, cone = self._here(rows, slots, memory)
         a_n, a_t, springs = self.compliances(slots, area, cone.tension)
         data = PairData(
             rows.columns, rows.values, np.column_stack([gap, memory.stretch + moved]), cone, a_n, a_t,
-            self.laws.dilatancy[slots.law], rows.valid & (gap <= speed),
+            self.laws.dilatancy[slots.law], rows.valid & (gap <= speed + np.maximum(slots.opening, 0.0)),
         )  # fmt: skip
         springy = np.zeros(len(slots), dtype=bool) if springs is None else springs.normal
         at_rest = np.zeros_like(rows.imposed)

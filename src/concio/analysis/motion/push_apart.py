@@ -21,7 +21,7 @@ from concio.analysis.motion.push_result import PushEnding
 from concio.analysis.motion.scheme import Scheme
 from concio.analysis.motion.start_on_moved_supports import begun
 from concio.analysis.motion.state import MotionState
-from concio.analysis.motion.statics import FAR, Balanced, Statics
+from concio.analysis.motion.statics import Balanced, Statics
 from concio.analysis.motion.structures import Structure, near_now, structures_of, together
 from concio.contact.reference import Reference
 from concio.model.stages import ControlPoint
@@ -248,7 +248,7 @@ def _begun(asked: PushAsked, structure: Structure) -> _One:
         msg = f"the structure does not stand before it is pushed{words}"
         if 0.0 < share < 1.0:
             msg += f", where its supports have moved by {share:.3g} of what was asked for"
-        away = float(abs(start.moved).max(initial=0.0)) > FAR * statics.width
+        away = float(abs(start.moved).max(initial=0.0)) > statics.far
         raise NoStartError(msg, moving, away=away, share=share)
     unit = statics.unit(reference.at_rest().placement.turns)
     return _One(structure, statics, start, bool(unit.any()))

@@ -61,7 +61,10 @@ REACHED = 1e-6
 """Relative error of that displacement where the iterations end."""
 
 FAR = 0.5
-"""Displacement in one equilibrium, over the width of a body, beyond which the structure moves away."""
+"""Displacement in one equilibrium, over the width of a body, beyond which the structure moves away.
+
+Joints that are open at first close before they press: so much more each.
+"""
 
 _NONE: Array = np.zeros(0, dtype=np.int64)
 
@@ -126,6 +129,8 @@ class Statics(SmallDisplacements):
         super().__init__(reference, scheme, factors, live, control, sag, sign)
         self.solver = StepSolver(engine or reference.model.engine)
         self._unsolved = 0
+        ends = np.array([(i.a, i.b) for i in reference.detection.interfaces], dtype=int).reshape(-1, 2)
+        self.far = FAR * self.width + float(reference.rules.openings(*ends.T).sum())
         self.certificate = Certificate(reference, scheme, self.maker)
 
     def work_displacement(self, before: MotionState, found: Balanced) -> float:
@@ -183,7 +188,7 @@ class Statics(SmallDisplacements):
             else:
                 answer = None
             resistance.adapt(iteration, x)
-            if float(np.abs(moved).max()) > FAR * self.width + abs(target or 0.0):
+            if float(np.abs(moved).max()) > self.far + abs(target or 0.0):
                 break
         assert found is not None
         answer = answer or self._judged(since or state, here, memory, slid, multiplier, found, moved, iteration)
