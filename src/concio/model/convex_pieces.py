@@ -41,13 +41,13 @@ class ConvexPiece:
 
     @cached_property
     def directions(self) -> Array:
-        """Directions of its edges (e, 3): where two of its planes meet in two of its corners."""
+        """Directions of its edges (e, 3): those of two planes that are not one and meet in two corners or more."""
         size = float(np.ptp(self.vertices, axis=0).max())
-        on = np.abs(self.vertices @ self.normals.T - self.offsets) <= FLAT * size
-        shared = on.astype(int) @ on.T.astype(int)  # planes that two corners share
-        p, q = np.nonzero(np.triu(shared >= 2, 1))
-        along = self.vertices[q] - self.vertices[p]
-        along /= np.linalg.norm(along, axis=1)[:, None]
+        on = (np.abs(self.vertices @ self.normals.T - self.offsets) <= FLAT * size).astype(float)
+        p, q = np.nonzero(np.triu(on.T @ on >= 2, 1))
+        along = cross(self.normals[p], self.normals[q])
+        steep = np.linalg.norm(along, axis=1)
+        along = along[steep > FLAT] / steep[steep > FLAT, None]
         along *= np.where(along @ np.array([1.0, 1e-3, 1e-6]) < 0, -1.0, 1.0)[:, None]
         return np.unique(np.round(along, 9), axis=0)
 

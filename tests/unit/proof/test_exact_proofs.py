@@ -7,6 +7,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from copy import deepcopy
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -278,6 +279,16 @@ def test_a_toe_that_crushes_is_a_fraction_near_the_plastic_hinge() -> None:
     assert low == high
     assert float(low) == pytest.approx(found, rel=1e-9)
     assert float(low) == pytest.approx(1 / 3, rel=0.01)
+
+
+@pytest.mark.parametrize("unit", [2.0**-36, 2.0**30])
+def test_weights_in_any_unit_have_the_same_proof(unit: float) -> None:
+    """A multiplier has no unit: those of blocks of 20 kN/m3 and of 3e-10 kN/m3 are one number."""
+    wall = concio.wall(length=2.0, height=0.75, block_size=(0.5, 0.25), friction=0.5, horizontal=0.1, block="rigid")
+    for model in (wall, box(0.5, 0.3)):
+        stones = (dict.fromkeys(model.materials, Rigid(weight)) for weight in (20.0 * unit, 20.0))
+        found, wanted = (bounds(prove_limit(concio.assemble(replace(model, materials=own)))) for own in stones)
+        assert [float(v) for v in found] == pytest.approx([float(v) for v in wanted], rel=1e-9)
 
 
 def test_strength_in_space_is_bounded_from_both_sides() -> None:
