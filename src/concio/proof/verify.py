@@ -48,6 +48,15 @@ def said(text: str) -> str:
     return f"{text} = {value}" if len(text) <= 200 else f"{value} (a fraction of {len(text)} characters)"
 
 
+def factor(x: Fraction) -> str:
+    """Return the factor of a load group in words that stand for no other number: it may be as near as 1e-16 to one."""
+    value = float(x)
+    short = f"{value:g}"
+    if Fraction(short) == x:
+        return short
+    return repr(value) if Fraction(value) == x else str(x)
+
+
 def vector(texts: Texts) -> Vector:
     """Return the fractions of a list of texts."""
     return [exact(text) for text in texts]
@@ -194,7 +203,8 @@ def check(data: Data) -> str:
         raise ValueError("a load group is both constant and multiplied")
     more = any(set(joint) & {"cohesion", "tension", "cap"} for joint in data["joints"])
     points = f"with friction{' and strength' if more else ''} at the {len(data['joints'])} joint points stated"
-    acting = ", ".join([f"{g} x {float(x):g}" for g, x in constant.items()] + [f"{g} multiplied" for g in growing])
+    grow = [f"{g}{'' if x == 1 else f' x {factor(x)}'} multiplied" for g, x in growing.items()]
+    acting = ", ".join([f"{g} x {factor(x)}" for g, x in constant.items()] + grow)
     if data["claim"] == "collapse":
         if not work(data, data["motion"], constant) > taken(data, data["motion"]):
             raise ValueError("the loads do no work on the motion that joints could not take")

@@ -241,6 +241,15 @@ def solution(data: Data, rows: list[Row], right: list[Fraction]) -> list[tuple[F
     return [((m - r) * unit, (m + r) * unit) for m, r in enclosed(rows, right, data["pivots"], bits)]
 
 
+def factor(x: Fraction) -> str:
+    """Return the factor of a load group in words that stand for no other number."""
+    value = float(x)
+    short = f"{value:g}"
+    if Fraction(short) == x:
+        return short
+    return repr(value) if Fraction(value) == x else str(x)
+
+
 def least(condition: Condition, x: list[tuple[Fraction, Fraction]]) -> Fraction:
     """Return a lower bound of what must not be negative."""
     _, row, constant = condition
@@ -267,7 +276,7 @@ def check(data: Data) -> str:
     slips = f"{states.count('+') + states.count('-')} at the limit of friction"
     scales = not data["shapes"] and not any(law(joint, "gap") for joint in data["joints"])
     sizes = ", with these compliances or any multiple of them" if scales else ""
-    acting = ", ".join(f"{group} x {float(exact(text)):g}" for group, text in data["constant"].items())
+    acting = ", ".join(f"{group} x {factor(exact(text))}" for group, text in data["constant"].items())
     points = f"{len(data['joints'])} joint points stated ({told}, {slips})"
     return f"{acting}: a Coulomb equilibrium of the {points}{sizes}: {how}"
 

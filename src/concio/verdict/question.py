@@ -23,6 +23,9 @@ DEFAULT_THICKNESS = 1.0
 """Thickness of a plane body where none is given [m]."""
 MOST_THICKNESSES = 3
 
+GIVEN = 15
+"""Digits of a factor that was given: near a limit the seventh decides between two answers."""
+
 
 @dataclass(frozen=True)
 class Acting:
@@ -62,7 +65,7 @@ class Acting:
             reached = "" if math.isnan(self.factor) else f", reached {number(self.factor, 6)}"
             asked = "" if self.asked is None else f", asked for {number(self.asked, 6)}"
             return f"{self.group}: multiplied{asked}{reached}; at factor 1 {loads}"
-        factor = "" if self.factor == 1.0 else f" x {number(self.factor, 6)}"
+        factor = "" if self.factor == 1.0 else f" x {number(self.factor, GIVEN)}"
         return f"{self.group}{factor}: constant; {'at factor 1 ' if factor else ''}{loads}"
 
     def _loads(self, units: Units) -> str:

@@ -17,7 +17,7 @@ from concio.verdict.attention import attention, joints_not_made, torsion
 from concio.verdict.crushing import crushing
 from concio.verdict.odd_weights import odd_weights
 from concio.verdict.part_words import parts_told, regularised
-from concio.verdict.question import Question, question_of
+from concio.verdict.question import GIVEN, Question, question_of
 from concio.verdict.step_words import OUTCOMES, WORDS
 from concio.verdict.unseen import unseen
 from concio.verdict.verdict import Outcome, Verdict
@@ -117,7 +117,7 @@ def loads_in_short(question: Question, units: Units) -> str:
         return "no load at all"
     told = []
     for a in acting:
-        factor = "" if a.factor == 1.0 else f" x {number(a.factor, 6)}"
+        factor = "" if a.factor == 1.0 else f" x {number(a.factor, GIVEN)}"
         told.append(f"{a.group}{factor} ({units.text('force', abs(a.factor) * a.size, 4) if a.size else a.what})")
     return " and ".join(told) if len(told) < 3 else ", ".join(told[:-1]) + f" and {told[-1]}"
 

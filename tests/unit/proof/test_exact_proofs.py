@@ -271,6 +271,22 @@ def test_forces_that_balance_the_loads_are_proved_in_plane_and_space() -> None:
             prove_balance(concio.assemble(model), {"live": 0.7})
 
 
+@pytest.mark.parametrize("share", [1e-9, 1e-12, 2.0**-54])
+def test_what_is_proved_near_a_limit_names_its_own_factor(share: float) -> None:
+    """Balanced at 0.25, not above: "live x 0.25" was said to be balanced, and to be not, proved exactly both times."""
+    assembly = concio.assemble(concio.column(width=0.5, height=2.0, blocks=1, block="rigid", horizontal=1.0))
+    below, above = 0.25 - share, 0.25 + 4 * share
+    balanced = verify.check(prove_balance(assembly, {"live": below}))
+    assert balanced.endswith(f"live x {below!r}: proved exactly")
+    assert verify.check(prove_balance(assembly, {"live": 0.25})).endswith("live x 0.25: proved exactly")
+    told = concio.solve(assembly, factors={"live": 0.25 + 1e-7}, on_failure="return").verdict
+    assert any(line.startswith("live x 0.2500001: constant") for line in told.question.loads())
+    if share > 1e-10:
+        fallen = verify.check(prove_collapse(assembly, {"live": above}))
+        assert fallen.endswith(f"live x {above!r}: proved exactly")
+        assert "no forces" in fallen
+
+
 def test_a_toe_that_crushes_is_a_fraction_near_the_plastic_hinge() -> None:
     """30 kN/m2 carry 20 kN over two thirds of the joint: 1/3, and less by what its points miss of the edge."""
     assembly = concio.assemble(plain(loads=PUSHED, laws={"joint": JointLaw(0.9, compressive_strength=30.0)}))
