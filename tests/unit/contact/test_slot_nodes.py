@@ -7,7 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from concio.contact.slots import SlotMaker, _MeshedSlots
+from concio.contact.coupling import Line
+from concio.contact.slots import SlotMaker, _MeshedSlots, _reaching
 
 AT, NODES = np.array([0.0, 0.4, 1.0, 1.5]), np.array([7, 3, 9, 2])
 
@@ -63,3 +64,13 @@ def test_sides_of_slots_come_after_those_of_rigid_bodies_and_are_filled_up() -> 
     assert corner.node.tolist() == [[50]] * 3 + [[8], [6]]
     assert corner.weight.tolist() == [[0.0]] * 3 + [[1.0], [1.0]]
     assert _MeshedSlots().side(0, 3, 50) is None
+
+
+@pytest.mark.parametrize("first", [-5.0, -1.501, -0.3, 0.0, 0.4, 0.501, 7.0])
+def test_a_line_that_slid_past_a_segment_is_moved_onto_its_middle_and_one_that_covers_it_stays(first: float) -> None:
+    """A line of 1.5 beside a segment of 1: whichever side it slid past, its end nearest to the middle comes there."""
+    line = Line(NODES, first + AT, 1)
+    found = _reaching(line, 1.0)
+    assert np.diff(found.at) == pytest.approx(np.diff(AT))
+    wanted = np.clip(0.5, first, first + 1.5)  # the place of the line that is nearest to the middle
+    assert found.at == pytest.approx(line.at + 0.5 - wanted)

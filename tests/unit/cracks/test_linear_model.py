@@ -19,17 +19,20 @@ CONFIDENCE = 0.95
 
 
 class Linear:
-    """Readings A s of motions s, each of which is reached."""
+    """Readings A s of motions s, each of which is reached; motions beyond their bounds are not asked for."""
 
-    def __init__(self, A: np.ndarray) -> None:
-        self.A = A
+    def __init__(self, A: np.ndarray, most: np.ndarray) -> None:
+        self.A, self.most = A, most
 
     def predict(self, motions: np.ndarray) -> SimpleNamespace:
         """Return the prediction of motions."""
+        assert (np.abs(motions) <= self.most * (1 + 1e-12)).all()
         return SimpleNamespace(reached=True, values=self.A @ motions, motions=motions)
 
 
-def measured(seed: int, n: int, k: int, moves: dict[int, float], noise: float = 1.0) -> Fitter:
+def measured(
+    seed: int, n: int, k: int, moves: dict[int, float], noise: float = 1.0, most: float | np.ndarray = 50.0
+) -> Fitter:
     """Return the fits of n readings of k candidates, of which some have moved; errors and units differ."""
     rng = np.random.default_rng(seed)
     unit = 10.0 ** rng.uniform(-3, 1, k)  # of the motions
@@ -39,7 +42,7 @@ def measured(seed: int, n: int, k: int, moves: dict[int, float], noise: float = 
     for c, size in moves.items():
         s[c] = size * unit[c]
     value = A @ s + noise * error * rng.normal(size=n)
-    return Fitter(Linear(A), value, error, -50.0 * unit, 50.0 * unit, unit)
+    return Fitter(Linear(A, most * unit), value, error, -most * unit, most * unit, unit)
 
 
 def least(fitter: Fitter, chosen: tuple[int, ...], kept: np.ndarray | None = None) -> tuple[float, np.ndarray]:
@@ -123,3 +126,15 @@ def test_one_measurement_more_than_motions_names_nothing_more() -> None:
             cause = cause_of(fitter, fit, ("a", "b", "c"), CONFIDENCE)
             assert additions_of(fitter, cause, ("a", "b", "c"), CONFIDENCE) == ()
     assert 20 < told < 40
+
+
+def test_intervals_end_at_the_bounds_of_motions_and_no_state_beyond_is_asked_for() -> None:
+    """The first motion is at its bound, the second far from its own: along their line one of two is outside."""
+    fitter = measured(2, 9, 2, {0: 2.0, 1: 2.0}, noise=0.5, most=np.array([2.0, 50.0]))
+    fit = fitter.fit((0, 1), allowed=chi2.ppf(CONFIDENCE, 7))
+    assert fit is not None
+    found = cause_of(fitter, fit, ("a", "b"), CONFIDENCE)
+    assert (found.low < found.motion).all()
+    assert (found.high <= fitter.high).all()
+    assert found.high[0] == pytest.approx(fitter.high[0], rel=1e-3)
+    assert found.high[1] < 0.1 * fitter.high[1]

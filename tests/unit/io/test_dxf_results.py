@@ -11,7 +11,7 @@ import pytest
 import concio
 from commands import run
 from concio.analysis.thrust import hinges
-from concio.io.dxf_results import HEAD, write_results_dxf
+from concio.io.dxf_results import HEAD, LONGEST, write_results_dxf
 
 ezdxf = pytest.importorskip("ezdxf")
 
@@ -43,6 +43,8 @@ def test_forces_stand_in_the_joints_with_their_sizes_and_directions(tmp_path: Pa
     lines = [metres * line for line in corners(path, "FORCES")]
     lengths = [float(np.hypot(*(line[1] - line[0]))) for line in lines]
     assert np.array(lengths) / max(lengths) == pytest.approx(sizes / sizes.max(), rel=1e-6)
+    size = max(float(np.ptp(body.vertices, axis=0).max()) for body in result.model.bodies)
+    assert 0.5 * LONGEST * size < max(lengths) < 10 * LONGEST * size  # to be seen beside the blocks, in any unit
     joints = result.joints
     for line, middle, tangent, e in zip(lines, joints.middle, joints.tangent, joints.eccentricity, strict=True):
         assert line.mean(axis=0) == pytest.approx(middle + e * tangent, abs=1e-6)

@@ -13,7 +13,7 @@ from concio.solvers.lcp.linear_problem import LinearComplementarity
 from concio.solvers.path.equations import PathEquations
 from concio.solvers.path.path_state import CLOSED, CRUSHED, OPEN, STICK, LinearPath
 from concio.solvers.path.rate_lcp import lemke
-from concio.solvers.path.rates import rates, values
+from concio.solvers.path.rates import Values, admissible, rates, values
 from concio.solvers.path.scaling import ScaledPath
 from lcp_oracles import infeasibility
 
@@ -99,6 +99,28 @@ def test_distances_from_the_bounds() -> None:
     assert found.plus == pytest.approx([2.0 + 2.0 + 1.0, 3.0 - 2.0])
     assert found.minus == pytest.approx([2.0 + 2.0 - 1.0, 3.0 + 2.0])
     assert found.gap_zero / found.force_zero == pytest.approx(0.3 / 6.0)
+
+
+def test_states_wished_for_are_taken_where_the_point_allows_them() -> None:
+    """Open where no force is left, crushed at the cap, closed where no gap is; a slip at the strength it goes against.
+
+    Pairs without a force are beyond both, pairs far from their bounds keep what they have; open ones have no sense.
+    """
+    m = 8
+    far, none = np.full(m, 5.0), np.zeros(m)
+    at = {"gap": far.copy(), "force": far.copy(), "room": far.copy(), "plus": far.copy(), "minus": far.copy()}
+    at["force"][0] = at["room"][1] = at["gap"][2] = at["plus"][3] = at["minus"][4] = at["plus"][5] = 1e-12
+    made = SimpleNamespace(
+        data=SimpleNamespace(cone=Cone(np.full(m, 0.5), none, none, np.full(m, 10.0))),
+        contact=np.array([CLOSED, CLOSED, OPEN, CLOSED, CLOSED, CLOSED, CLOSED, OPEN], dtype=np.int8),
+        sliding=np.array([STICK, STICK, 1, STICK, STICK, STICK, 1, 1], dtype=np.int8),
+    )
+    point = Values(**at, gap_zero=1e-9, force_zero=1e-9)
+    wished = np.array([OPEN, CRUSHED, CLOSED, CLOSED, CLOSED, CLOSED, OPEN, CLOSED])
+    contact, sliding = admissible(made, point, wished, np.array([1, 1, STICK, 1, -1, -1, -1, STICK]))
+    assert contact.tolist() == [OPEN, CRUSHED, CLOSED, CLOSED, CLOSED, CLOSED, CLOSED, OPEN]
+    assert sliding[2:].tolist() == [STICK, 1, -1, STICK, 1, 1]
+    assert sliding[0] == 1
 
 
 def test_directions_of_a_vertex_solve_their_complementarity_problem():
