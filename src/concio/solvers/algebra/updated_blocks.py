@@ -63,6 +63,7 @@ class UpdatedBlocks:
         self.pairs = np.zeros(0, dtype=int)
         self.X, self.W = np.zeros((self.N, 0)), np.zeros((0, 0))
         self.C_P: Any = None
+        self._place = np.full(self.C.shape[0] // self.d, -1)
         self._delta = np.zeros((0, 0))
         self.D = self.factor.D
 
@@ -135,8 +136,7 @@ class UpdatedBlocks:
 
     def _places(self, pairs: Array) -> Array:
         """Return where pairs stand among those with columns."""
-        order = np.argsort(self.pairs)
-        return np.asarray(order[np.searchsorted(self.pairs, pairs, sorter=order)])
+        return np.asarray(self._place[pairs])
 
     def _rows(self, pairs: Array) -> Array:
         """Return the numbers of the rows of some pairs, pair after pair."""
@@ -146,22 +146,49 @@ class UpdatedBlocks:
         """Work out the columns of pairs that have none yet."""
         if self.version != self.factor.count:
             self._forget()
-        new = np.setdiff1d(pairs, self.pairs)
+        missing = np.zeros(len(self._place), dtype=bool)
+        missing[pairs] = self._place[pairs] < 0
+        new = np.flatnonzero(missing)
         if not new.size:
             return
-        rows = self.C[self._rows(new)]
-        rows = rows if rows.shape[1] == self.N else rows[:, : self.N]
-        X = np.empty((self.N, self.X.shape[1] + rows.shape[0]))
+        chosen = self._rows(new)
+        X = np.empty((self.N, self.X.shape[1] + chosen.size))
         X[:, : self.X.shape[1]] = self.X
-        for first in range(0, rows.shape[0], AT_ONCE):  # all at once would not fit beside large factors
-            some = rows if rows.shape[0] <= AT_ONCE else rows[first : first + AT_ONCE]
+        for first in range(0, chosen.size, AT_ONCE):  # all at once would not fit beside large factors
+            some = chosen[first : first + AT_ONCE]
             at = self.X.shape[1] + first
-            dense = some if isinstance(some, np.ndarray) else some.toarray()
-            X[:, at : at + some.shape[0]] = self.factor.solve(np.ascontiguousarray(dense.T))
-        both = np.vstack if isinstance(rows, np.ndarray) else sp.vstack
+            X[:, at : at + some.size] = self.factor.solve(self._columns(some))
+        self._place[new] = self.pairs.size + np.arange(new.size)
         self.X, self.pairs = X, np.concatenate([self.pairs, new])
-        self.C_P = rows if self.C_P is None else both([self.C_P, rows])
+        self.C_P = self._rows_of(self._rows(self.pairs))
         self.W = self.C_P @ self.X
+
+    def _columns(self, rows: Array) -> Array:
+        """Return some rows of C as columns (N, k)."""
+        columns = np.zeros((self.N, rows.size))
+        if isinstance(self.C, np.ndarray):
+            columns[:] = self.C[rows, : self.N].T
+            return columns
+        number, unknown, value = self._entries(rows)
+        columns[unknown, number] = value
+        return columns
+
+    def _rows_of(self, rows: Array) -> Any:
+        """Return some rows of C, (k, N)."""
+        if isinstance(self.C, np.ndarray):
+            return self.C[rows, : self.N]
+        number, unknown, value = self._entries(rows)
+        return sp.csr_array((value, (number, unknown)), shape=(rows.size, self.N))
+
+    def _entries(self, rows: Array) -> tuple[Array, Array, Array]:
+        """Return the entries of some rows of a sparse C: which of the rows, unknowns below N, values."""
+        first = self.C.indptr[rows]
+        count = self.C.indptr[rows + 1] - first
+        number = np.repeat(np.arange(rows.size), count)
+        at = np.arange(number.size) + np.repeat(first - np.cumsum(count) + count, count)
+        unknown = self.C.indices[at]
+        own = unknown < self.N
+        return number[own], unknown[own], self.C.data[at[own]]
 
 
 def block_diagonal(blocks: Array) -> Array:

@@ -63,7 +63,7 @@ class PairsAsked:
         y_n, y_t = p.relative(x0, t0)
         y = np.column_stack([y_n, y_t])[V].ravel()
         tau0 = t0[V].ravel()
-        forces, _ = solve_small(
+        forces = solve_small(
             W * (p.force / p.length), (y - W @ tau0) / p.length, p.cone[V].in_units(p.force), p.dilatancy[V]
         )
         if forces is None:
@@ -126,14 +126,16 @@ class Settled:
     linear: LinearStep | None = None
 
 
-def settle(p: StepProblem, factor: Factor, states: PairStates, x: Array, t: Array) -> Settled:
-    """Settle the states of a step whose states, factorised, gave (x, t)."""
-    x0, t0, linear = x, t, laws_of_step(p, states, across_slip(p, x, t))
-    best, laws = p.residual(x, t)
+def settle(
+    p: StepProblem, factor: Factor, linear: PairLaws, states: PairStates, x: Array, t: Array, errors: Errors
+) -> Settled:
+    """Settle the states of a step whose states, with their laws and factor, gave (x, t), which has these errors."""
+    x0, t0 = x, t
+    best, laws = p.violation(t, errors)
     found = Settled(x, t, states, best)
-    asked = PairsAsked(p, factor)
+    asked, read = PairsAsked(p, factor), read_states(p, x, t, errors)
     for _ in range(STEP_PROBLEMS):
-        violated = (laws > STEP_SETTLED) & read_states(p, x, t).differ(states)
+        violated = (laws > STEP_SETTLED) & read.differ(states)
         violated[asked.number] = False
         added = np.flatnonzero(violated)
         if not added.size or len(asked.number) + len(added) > STEP_PAIRS:
@@ -146,10 +148,11 @@ def settle(p: StepProblem, factor: Factor, states: PairStates, x: Array, t: Arra
         if decided is None:
             break
         x, t = decided
-        _, laws = p.residual(x, t)
-        small, V = read_states(p, x, t), asked.number
+        errors = p.errors(x, t)
+        _, laws = p.violation(t, errors)
+        read, V = read_states(p, x, t, errors), asked.number
         normal, direction = states.normal.copy(), states.direction.copy()
-        normal[V], direction[V] = small.normal[V], small.direction[V]
+        normal[V], direction[V] = read.normal[V], read.direction[V]
         now = PairStates(normal, direction)
         settled = laws_of_step(p, now, across_slip(p, x, t))
         D_now = settled.blocks()

@@ -1,6 +1,8 @@
-r"""The small frictional problem of a few pairs, all others in their states: y = q + W t, solved by Lemke's method.
+r"""The small frictional problem of a few pairs, all others in their states: y = q + W t.
 
-In the copositive form with z = (p, b+, b-, l, r), t_n = p - T, t_t = b+ - b-, l the size of the slip, r the crushing,
+Newton's method goes from states to states, each a dense linear system, until they repeat themselves. Where it goes in
+circles Lemke's method solves the copositive form with z = (p, b+, b-, l, r), t_n = p - T, t_t = b+ - b-, l the size of
+the slip, r the crushing,
 
 .. math::
 
@@ -16,12 +18,21 @@ import numpy as np
 
 from concio.problem.cone import Cone
 from concio.problem.contact_problem import Array
+from concio.problem.natural_map import read_states
+from concio.problem.pair_state import PairStates
 from concio.solvers.lcp.lemke_method import Outcome, lemke
 from concio.solvers.lcp.linear_problem import LinearComplementarity
 
 
-def solve_small(W: Array, q: Array, cone: Cone, dilatancy: Array) -> tuple[Array | None, int]:
-    """Return the forces (v, 2) of v pairs, or None, and the pivots made.
+STATES = 12
+"""Largest number of states that Newton's method goes through; most problems of steps need two or three."""
+
+SHARE = 1e-11
+"""Compliance added to rows that hold, over that of their pair: rigid blocks on many corners have no unique forces."""
+
+
+def solve_small(W: Array, q: Array, cone: Cone, dilatancy: Array) -> Array | None:
+    """Return the forces (v, 2) of v pairs, or None.
 
     Parameters
     ----------
@@ -31,6 +42,56 @@ def solve_small(W: Array, q: Array, cone: Cone, dilatancy: Array) -> tuple[Array
     cone : Cone
     dilatancy : (v,) array
     """
+    found = by_states(W, q, cone, dilatancy)
+    return by_pivoting(W, q, cone, dilatancy) if found is None else found
+
+
+def by_states(W: Array, q: Array, cone: Cone, dilatancy: Array) -> Array | None:
+    """Return the forces (v, 2) where states repeat themselves; None where they do not, or come round again."""
+    own = W.diagonal().reshape(-1, 2)
+    unit = np.where(own > 0, own, max(float(own.max(initial=0.0)), np.finfo(float).tiny))
+    t, seen, rigid = np.zeros((len(q) // 2, 2)), [b""], np.zeros(len(q) // 2)
+    for _ in range(STATES):
+        y = (q + W @ t.ravel()).reshape(-1, 2)
+        y[:, 0] -= dilatancy * np.abs(y[:, 1])
+        states = read_states(cone, y / unit, t, rigid)
+        key = states.key()
+        if key == seen[-1]:
+            return t
+        if key in seen:
+            break
+        seen.append(key)
+        t = _in_states(states, W, q, cone, dilatancy)
+        if not np.isfinite(t).all():
+            break
+    return None
+
+
+def _in_states(states: PairStates, W: Array, q: Array, cone: Cone, dilatancy: Array) -> Array:
+    """Return the forces (v, 2) of pairs in given states; not finite where there are none."""
+    v, way, slips = len(states), states.direction[:, 0], states.slips
+    closed = np.flatnonzero(states.closed)
+    stick = np.flatnonzero(cone.rough & ~slips & (~states.open | (cone.spare > 0)))
+    n, k = len(closed), len(closed) + len(stick)
+    given = np.zeros((v, 2))
+    given[:, 0] = np.where(states.closed, 0.0, np.where(states.crushed, np.minimum(cone.cap, 1e300), -cone.tension))
+    given[:, 1] = np.where(slips, -way * cone.linear_strength(given[:, 0]), 0.0)
+    free, held = np.zeros((2 * v, k)), np.zeros((k, 2 * v))
+    free[2 * closed, np.arange(n)] = 1.0
+    free[2 * closed + 1, np.arange(n)] = -(way * cone.friction)[closed]
+    held[np.arange(n), 2 * closed] = 1.0
+    held[np.arange(n), 2 * closed + 1] = -(way * dilatancy)[closed]
+    free[2 * stick + 1, np.arange(n, k)] = held[np.arange(n, k), 2 * stick + 1] = 1.0
+    share = SHARE * W.diagonal()[np.concatenate([2 * closed, 2 * stick + 1])]
+    try:
+        forces = np.linalg.solve(held @ W @ free + np.diag(share), -held @ (q + W @ given.ravel()))
+    except np.linalg.LinAlgError:
+        forces = np.full(k, np.nan)
+    return given + (free @ forces).reshape(v, 2)
+
+
+def by_pivoting(W: Array, q: Array, cone: Cone, dilatancy: Array) -> Array | None:
+    """Return the forces (v, 2) that Lemke's method finds in the copositive form, or None."""
     n = np.arange(0, len(q), 2)
     v = len(n)
     t = n + 1
@@ -57,8 +118,8 @@ def solve_small(W: Array, q: Array, cone: Cone, dilatancy: Array) -> tuple[Array
     q0[crush] = (cone.cap + cone.tension)[capped]
     found = lemke(LinearComplementarity(M, q0))
     if found.outcome is not Outcome.SOLVED:
-        return None, found.pivots
+        return None
     forces = np.zeros((v, 2))
     forces[:, 0] = found.z[:v] - cone.tension
     forces[rough, 1] = found.z[plus] - found.z[minus]
-    return forces, found.pivots
+    return forces

@@ -167,7 +167,7 @@ class StepSolver:
                 x, t, turn, states = x1, t1, across_slip(p, x1, t1, errors), new
                 continue
             if changed <= FEW or round_ >= FLIPS or any(not new.differ(s).any() for s in seen):
-                settled = settle(p, factor, states, x1, t1)
+                settled = settle(p, factor, linear, states, x1, t1, errors)
                 found = keep(settled.x, settled.t, settled.states, settled.residual, "small problem")
                 if found.residual < STEP_SETTLED:
                     self._linear = settled.linear

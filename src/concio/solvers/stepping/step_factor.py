@@ -81,6 +81,10 @@ class StepFactor:
     _rows: tuple[Array, Array, Array] | None = None
     """Places of entries of the pattern by rows, their columns, and where rows begin."""
 
+    _matrix: sp.csr_array | None = None
+    _entries: Array
+    """A, and its entries in the pattern."""
+
     _assembled: tuple[Array, Array] | None = None
     """Blocks D of the last matrix of these rows, and its entries."""
 
@@ -89,7 +93,10 @@ class StepFactor:
 
         Where the rows are those of some pairs of the layout alone, ``pick`` says of which.
         """
-        self._matrix, self._values, self._assembled = matrix, values, None
+        if self._matrix is not matrix:
+            self._matrix = matrix
+            self._entries = np.bincount(self._matrix_slot, weights=matrix.data, minlength=self.pattern.nnz)
+        self._values, self._assembled = values, None
         self._slots_now = self._slot if pick is None else self._slot[pick]
 
     @property
@@ -111,7 +118,7 @@ class StepFactor:
         if before is not None and 2 * len(some) > len(D):
             before, change, some = None, D, filled(D)
         data = self._products(change, some)
-        data += self._of_matrix() if before is None else before[1]
+        data += self._entries if before is None else before[1]
         self._assembled = D.copy(), data
         data = data.copy()
         assert not isinstance(diagonal, sp.csr_array), "a diagonal"
@@ -127,10 +134,6 @@ class StepFactor:
         local = np.matmul(values.transpose(0, 2, 1), np.matmul(D[some], values))
         found = np.bincount(self._slots_now[some].ravel(), weights=local.ravel(), minlength=nnz + 1)[:nnz]
         return np.asarray(found, dtype=float)
-
-    def _of_matrix(self) -> Array:
-        """Return the entries of A."""
-        return np.bincount(self._matrix_slot, weights=self._matrix.data, minlength=self.pattern.nnz)
 
     def without(self, some: Array) -> sp.csr_array:
         """Return the last matrix factorised, without what pairs ``some`` (k,) have in it."""
