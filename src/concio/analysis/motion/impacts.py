@@ -141,7 +141,7 @@ class Impact:
             if left > SLOW * last:
                 break
             before = found.t
-            again = self.solver.step(_counted(problem, lent_n, lent_t, before), found.states, found.x, found.t)
+            again = self.solver.step_again(_counted(problem, lent_n, lent_t, before), found)
             if again.residual > CERTIFIED:
                 break
             found, counted = again, before

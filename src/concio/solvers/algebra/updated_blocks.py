@@ -55,9 +55,9 @@ class UpdatedBlocks:
     def __init__(self, factor: Factor, C: Any, N: int, d: int, most: int = MOST) -> None:
         self.factor, self.C, self.N, self.d = factor, C, N, d
         self.most = int(min(most, ROOM // max(N * d, 1)))
-        self._forget()
+        self.forget()
 
-    def _forget(self) -> None:
+    def forget(self) -> None:
         """Begin with the factor as it is: no columns, no changes."""
         self.version = self.factor.count
         self.pairs = np.zeros(0, dtype=int)
@@ -76,7 +76,7 @@ class UpdatedBlocks:
             The matrix cannot be factorised.
         """
         self.factor.factorise(D, diagonal)
-        self._forget()
+        self.forget()
 
     def has(self, diagonal: Springs) -> bool:
         """Tell whether there is a factor at hand with this added to K."""
@@ -145,7 +145,7 @@ class UpdatedBlocks:
     def _meet(self, pairs: Array) -> None:
         """Work out the columns of pairs that have none yet."""
         if self.version != self.factor.count:
-            self._forget()
+            self.forget()
         missing = np.zeros(len(self._place), dtype=bool)
         missing[pairs] = self._place[pairs] < 0
         new = np.flatnonzero(missing)

@@ -43,6 +43,13 @@ class PairsAsked:
         self.D = factor.D
         self.blocks = UpdatedBlocks(factor, p.rows[0], len(p.b), p.dim, STEP_PAIRS)
 
+    def again(self, p: StepProblem) -> PairsAsked:
+        """Return none of the pairs of a problem with the same rows and factor, which finds the columns made so far."""
+        self.p, self.number = p, np.zeros(0, dtype=int)
+        if self.blocks.pairs.size > STEP_PAIRS:
+            self.blocks.forget()
+        return self
+
     def join(self, added: Array) -> None:
         """Take further pairs in."""
         self.number = np.concatenate([self.number, added])
@@ -127,13 +134,13 @@ class Settled:
 
 
 def settle(
-    p: StepProblem, factor: Factor, linear: PairLaws, states: PairStates, x: Array, t: Array, errors: Errors
+    p: StepProblem, asked: PairsAsked, linear: PairLaws, states: PairStates, x: Array, t: Array, errors: Errors
 ) -> Settled:
     """Settle the states of a step whose states, with their laws and factor, gave (x, t), which has these errors."""
     x0, t0 = x, t
     best, laws = p.violation(t, errors)
     found = Settled(x, t, states, best)
-    asked, read = PairsAsked(p, factor), read_states(p, x, t, errors)
+    read = read_states(p, x, t, errors)
     for _ in range(STEP_PROBLEMS):
         violated = (laws > STEP_SETTLED) & read.differ(states)
         violated[asked.number] = False

@@ -16,7 +16,7 @@ from concio.solvers.pivoting import sparse_lemke
 from concio.solvers.stepping.active_pairs import ActivePairs
 from concio.solvers.stepping.one_factor import OneFactor
 from concio.solvers.stepping.problem import StepProblem, StepSolution
-from concio.solvers.stepping.settle_step import LinearStep, settle
+from concio.solvers.stepping.settle_step import LinearStep, PairsAsked, settle
 from concio.solvers.stepping.softer_joints import by_softer_joints
 from concio.solvers.stepping.states import across_slip, halting, laws_of_step, read_states
 from concio.solvers.stepping.step_factor import StepFactor
@@ -54,6 +54,7 @@ class StepSolver:
         self.engine, self.large = engine, large
         self.factor: StepFactor | None = None
         self._linear: LinearStep | None = None
+        self._begun: tuple[LinearStep, PairStates, PairsAsked] | None = None
         self._pairs: ActivePairs | None = None
         self._one: OneFactor | None = None
         self.solved_by = ""
@@ -64,7 +65,7 @@ class StepSolver:
 
     def new_layout(self) -> None:
         """Forget the pattern: the rows meet other unknowns from now on."""
-        self.factor = self._linear = self._pairs = self._one = None
+        self.factor = self._linear = self._begun = self._pairs = self._one = None
 
     def step_again(self, p: StepProblem, found: StepSolution) -> StepSolution:
         """Solve a step of which only the forces have changed a little since :meth:`step`, with the factors of then.
@@ -84,8 +85,24 @@ class StepSolver:
             residual, _ = pairs.part.violation(t, errors)
             if residual < STEP_GOOD:
                 return pairs.of_all(replace(now, x=x, t=t, residual=residual))
+            settled = self._settled(pairs.part, now)
+            if settled.residual < STEP_SETTLED:
+                return self._told(pairs.of_all(settled))
         again = self.step(p, found.states, found.x, found.t)
         return replace(again, factorisations=found.factorisations + again.factorisations)
+
+    def _settled(self, p: StepProblem, at: StepSolution) -> StepSolution:
+        """Return a step of which only the forces have changed, settled by small problems on the factor at hand."""
+        if self._begun is None or p.dim == 3:
+            return replace(at, residual=np.inf)
+        linear, states, asked = self._begun
+        x, t, errors = linear.refined(p, at.x, at.t)
+        settled = settle(p, asked.again(p), linear.laws, states, x, t, errors)
+        if settled.linear is not None and settled.residual < STEP_SETTLED:
+            self._linear = settled.linear
+        return replace(
+            at, x=settled.x, t=settled.t, states=settled.states, residual=settled.residual, how="small problem"
+        )
 
     def step(self, p: StepProblem, states: PairStates, x: Array, t: Array) -> StepSolution:
         """Solve a step from the states of the one before and a point near the answer.
@@ -112,7 +129,7 @@ class StepSolver:
 
     def _step(self, p: StepProblem, states: PairStates, x: Array, t: Array) -> StepSolution:
         """Solve a step of active pairs, by each means in its turn."""
-        self._one = self._linear = None
+        self._one = self._linear = self._begun = None
         if p.dim == 3 and len(p.b) >= self.large:
             assert self.factor is not None
             self._one = OneFactor(self.factor)
@@ -152,7 +169,9 @@ class StepSolver:
             D = linear.blocks()
             try:
                 factor.factorise(D)
+                asked = PairsAsked(p, factor)
                 self._linear = LinearStep(linear, factor, D)
+                self._begun = self._linear, states, asked
                 x1, t1, errors = self._linear.refined(p, x, t)
             except SingularMatrixError:
                 break
@@ -167,10 +186,10 @@ class StepSolver:
                 x, t, turn, states = x1, t1, across_slip(p, x1, t1, errors), new
                 continue
             if changed <= FEW or round_ >= FLIPS or any(not new.differ(s).any() for s in seen):
-                settled = settle(p, factor, linear, states, x1, t1, errors)
+                settled = settle(p, asked, linear, states, x1, t1, errors)
                 found = keep(settled.x, settled.t, settled.states, settled.residual, "small problem")
                 if found.residual < STEP_SETTLED:
-                    self._linear = settled.linear
+                    self._linear = settled.linear or self._linear
                     return found
                 if any(not new.differ(s).any() for s in seen):
                     break
@@ -182,6 +201,7 @@ class StepSolver:
         pairs = self._take(p)
         part = pairs.part
         assert self.factor is not None
+        self._linear = self._begun = None
         turn = across_slip(part, np.zeros(len(f)), np.zeros((part.pairs, p.dim)))
         self.factor.factorise(laws_of_step(part, pairs.states(states), turn).blocks())
         return self.factor.solve(f)
