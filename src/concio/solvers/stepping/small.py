@@ -23,7 +23,6 @@ from concio.problem.pair_state import PairStates
 from concio.solvers.lcp.lemke_method import Outcome, lemke
 from concio.solvers.lcp.linear_problem import LinearComplementarity
 
-
 STATES = 12
 """Largest number of states that Newton's method goes through; most problems of steps need two or three."""
 
