@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 import concio
 from concio.analysis.seismic.macro_contacts import contacts_of
-from concio.analysis.seismic.sequence import Sequence
+from concio.analysis.seismic.sequence import Sequence, State
 from concio.analysis.seismic.tie_history import TieHistory
+from concio.contact.face_points import FacePoints, stated
+from concio.contact.points import NOWHERE
+from concio.problem.contact_problem import Laws
 from seismic_walls import overturning, site
 
 
@@ -35,3 +40,77 @@ def test_contacts_that_press_and_do_not_slide_stay(friction: float, slides: bool
     np.testing.assert_array_equal(state.stays, presses & (speed < 1e-8))
     assert state.stays.any() != slides
     assert presses.any()
+
+
+def on_its_foot(d: int, unit: float) -> Sequence:
+    """Return a block of 1 x 3 (depth 2) on the ground and its twin, contacts at their corners in turn; any unit."""
+    foot = unit * (np.array([[0.0, 0.0], [1.0, 0.0]]) if d == 2 else
+                   np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [1.0, 2.0, 0.0]]))  # fmt: skip
+    foot = np.stack([foot + 4.0 * unit * np.eye(d)[0], foot], axis=1).reshape(-1, d)
+    m, up = len(foot), np.eye(d)[-1]
+    contacts = FacePoints(
+        np.full(m, NOWHERE), (np.arange(m) + 1) % 2, np.zeros(m, dtype=int), foot, np.tile(up, (m, 1)),
+        np.tile(np.eye(d)[:-1], (m, 1, 1)), np.full((m, d - 1), -np.inf), np.full((m, d - 1), np.inf),
+        Laws.coulomb(0.5, m), np.ones(m),
+    )  # fmt: skip
+    centre = unit * (np.array([0.5, 1.5]) if d == 2 else np.array([0.5, 1.0, 1.5]))
+    blocks = [SimpleNamespace(centre=centre), SimpleNamespace(centre=centre + 4.0 * unit * np.eye(d)[0])]
+    mechanics = SimpleNamespace(blocks=blocks, reach=lambda points: 2.5 * unit)
+    return Sequence(mechanics, contacts, (), (), (), (0, centre, np.eye(d)[0]))
+
+
+def moving(sequence: Sequence, velocity: np.ndarray, presses: np.ndarray, stays: np.ndarray) -> State:
+    """Return the state at rest of the first block with a velocity; some contacts press, some do not slide."""
+    q = sequence.at_rest()
+    now, none = stated(sequence.contacts, q, sequence.size), np.zeros(0)
+    both, forces = np.array([velocity, 0.0 * velocity]), presses.astype(float)
+    return State(q, 0.1, both, forces, stays, now, none, none, TieHistory.none(0))
+
+
+@pytest.mark.parametrize("d", [2, 3])
+@pytest.mark.parametrize("unit", [2e-3, 1.0, 500.0])
+def test_a_step_puts_back_what_presses_and_what_sticks(d: int, unit: float) -> None:
+    """A block turns about the right end of its foot, but for what a step leaves: it lifts, and slides along and across.
+
+    One corner of the toe sticks. Where the block stands afterwards is that of the turn alone, but for the square of
+    what was wrong.
+    """
+    sequence = on_its_foot(d, unit)
+    toe = sequence.contacts.point[:, 0] == unit
+    sticks = np.arange(len(toe)) == len(toe) - 1
+    centre = sequence.mechanics.blocks[0].centre
+    spin = np.array([-1.0]) if d == 2 else np.array([0.0, 1.0, 0.0])
+    arm = centre - unit * np.eye(d)[0]
+    along = np.array([arm[-1], *(d - 2) * [0.0], -arm[0]])
+    turns = np.concatenate([along, spin])
+    exact = sequence.at_rest().moved(np.array([turns, 0.0 * turns]), 0.01)
+    astray = 1e-3 * unit * np.array([0.6, 0.5] if d == 2 else [0.6, -0.4, 0.5])
+    last = moving(sequence, np.concatenate([along + astray, spin]), toe, sticks)
+    found = sequence.step(last, 0.01)
+    assert found is not None
+    now = stated(sequence.contacts, found, sequence.size)
+    assert np.abs(now.gap[toe]).max() <= 1e-9 * unit
+    assert np.abs(now.drift[sticks]).max() <= 1e-9 * unit
+    assert now.gap[(sequence.contacts.b == 0) & ~toe] == pytest.approx(unit * np.sin(0.01), rel=1e-3)
+    assert found.centre == pytest.approx(exact.centre, abs=1e-4 * unit)
+
+
+@pytest.mark.parametrize("d", [2, 3])
+@pytest.mark.parametrize("unit", [2e-3, 1.0, 500.0])
+def test_contacts_without_a_force_do_not_sink_in_a_step(d: int, unit: float) -> None:
+    """The left end of the foot presses; the right one touches, and would sink by a hundredth of the way."""
+    sequence = on_its_foot(d, unit)
+    left = sequence.contacts.point[:, 0] == 0.0
+    velocity = np.zeros(d + (1 if d == 2 else 3))
+    velocity[0], velocity[d - 1] = 1.0, -5e-3  # slides, and turns about the left end
+    velocity[d if d == 2 else d + 1] = (-0.01 if d == 2 else 0.01) / unit
+    last = moving(sequence, velocity, left, np.zeros(len(left), dtype=bool))
+    length = 1e-4 * unit
+    moved = stated(sequence.contacts, last.q.moved(last.velocity, length), sequence.size)
+    own = sequence.contacts.b == 0
+    assert moved.gap[own & ~left].max() < -0.5e-6 * unit
+    found = sequence.step(last, length)
+    assert found is not None
+    now = stated(sequence.contacts, found, sequence.size)
+    assert np.abs(now.gap).max() <= 1e-9 * unit
+    assert now.drift[:, 0] == pytest.approx(length * own, rel=1e-3, abs=1e-9 * unit)
