@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 import concio
 from commands import run
-from concio.verdict.unseen import SEEN, unseen_bodies
+from concio.verdict.unseen import SEEN, unseen, unseen_bodies
 from pillars import pillar, sideways
 from samples import sample
 from seismic_walls import overturning, site
@@ -126,3 +126,26 @@ def test_what_is_seen_depends_on_shares_alone(share: float, size: float, dim: in
     model = concio.Model(bodies, materials, {"joint": concio.JointLaw(0.6)}, loads=(concio.Load("weight", down),))
     seen = unseen_bodies(concio.assemble(model), (None,))
     assert seen == (("light",) if share < SEEN * (1 + share) else ())
+
+
+def test_what_is_seen_is_seen_at_every_factor_that_is_told_of() -> None:
+    """A body without a weight worth speaking of is seen where another load acts on it, at these factors alone."""
+    ground, wall, light = (
+        concio.Body(name, [(x, z), (x + a, z), (x + a, z + a), (x, z + a)], kind=kind, material=material)
+        for name, x, z, a, kind, material in (
+            ("ground", 0.0, -1.0, 1.0, "fixed", "stone"), ("wall", 0.0, 0.0, 1.0, "rigid", "stone"),
+            ("light", 0.0, 1.0, 0.1, "rigid", "dust"),
+        )
+    )  # fmt: skip
+    loads = (
+        concio.Load("weight", (0.0, -1.0)),
+        concio.Load("point", (0.0, -1.0), bodies=("light",), at=(0.05, 1.1), group="live"),
+    )
+    materials = {"stone": concio.Rigid(20.0), "dust": concio.Rigid(1e-9)}
+    model = concio.Model((ground, wall, light), materials, {"joint": concio.JointLaw(0.6)}, loads=loads)
+    assembly = concio.assemble(model)
+    assert unseen(assembly, None) == unseen(assembly, {"live": 1.0}) == unseen(assembly, {"live": -0.2}) == ()
+    (told,) = unseen(assembly, {"live": 0.0})
+    assert "whether light is held" in told
+    assert unseen(assembly, {"live": 1.0}, {"live": 0.0}) == (told,)
+    assert unseen(assembly, {"live": 0.0}, {"live": 1.0}) == (told,)

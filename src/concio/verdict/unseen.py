@@ -37,7 +37,7 @@ class LoadedJoints(Loaded, Protocol):
 def unseen(
     loaded: LoadedJoints, *factors: Mapping[str, float] | None, groups: Sequence[Sequence[int]] = ()
 ) -> tuple[str, ...]:
-    """Return a sentence on the bodies that no certificate can see under loads at given factors, if there are any.
+    """Return a sentence on the bodies that no certificate can see under loads at any of given factors, if any are.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ def unseen(
     groups : sequence of sequences of int
         Bodies that were solved as one, where these are not the connected parts.
     """
-    return unseen_words(unseen_bodies(loaded, factors or (None,), groups))
+    return unseen_words(unseen_bodies(loaded, factors, groups))
 
 
 def unseen_words(names: tuple[str, ...]) -> tuple[str, ...]:

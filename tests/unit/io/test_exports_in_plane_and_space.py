@@ -300,3 +300,22 @@ def test_a_joint_that_carries_nothing_has_its_resultant_in_the_middle() -> None:
     assert lost.sum() == 1
     assert (plane.joints.point[empty] == plane.joints.middle[empty]).all()
     assert (resultants.point[lost] == resultants.middle[lost]).all()
+
+
+@pytest.mark.parametrize("kind", ["rigid", "elastic"])
+def test_cells_of_a_volume_say_of_which_face_they_are_and_elements_of_none(kind: str) -> None:
+    """Triangles of a rigid block lie in the plane of the face whose number they have; the ground is drawn likewise."""
+    ground = concio.Polyhedron.box("ground", (-1, -1, -1), (2, 2, 0), kind="fixed")
+    block = concio.Polyhedron.box("b", (0, 0, 0), (1, 1, 1), kind=kind, mesh_size=None if kind == "rigid" else 1.0)
+    stone = Rigid(unit_weight=20.0) if kind == "rigid" else Elastic(E=1e6, nu=0.2, unit_weight=20.0)
+    model = Model((ground, block), {"block": stone}, LAWS, loads=(Load("weight", (0, 0, -1)),))
+    grid = bodies_grid(concio.solve(model))
+    ends = np.cumsum(np.diff(grid.offsets, prepend=0))
+    for k, (end, face, body) in enumerate(zip(ends, grid.cell_data["face"], grid.cell_data["body"], strict=True)):
+        if body == 1 and kind == "elastic":
+            assert face == -1
+            continue
+        own = model.bodies[body]
+        corners = grid.points[grid.connectivity[(ends[k - 1] if k else 0) : end]]
+        assert len(corners) == 3
+        assert corners @ own.normals[face] == pytest.approx(np.full(3, own.offsets[face]), abs=1e-12)

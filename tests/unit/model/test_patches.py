@@ -154,6 +154,22 @@ def test_overlaps_are_told_with_their_depth(blocks: tuple[Polyhedron, ...], word
     assert not detection.patches
 
 
+@pytest.mark.parametrize(
+    ("other", "twice"),
+    [(l_block("again"), True), (turned(l_block("moved"), np.eye(3), (0.1, 0.1, 0.1)), False),
+     (box("bar", (0.2, 0.2, -1), (0.4, 0.4, 2)), False)],
+)  # fmt: skip
+def test_bodies_of_too_many_pieces_are_the_same_twice_where_their_corners_are(
+    monkeypatch: pytest.MonkeyPatch, other: Polyhedron, twice: bool
+) -> None:
+    monkeypatch.setattr(convex_pieces, "MOST_PIECES", 1)
+    block = l_block("l")
+    assert block.pieces is None
+    (overlap,) = found(block, other).overlaps
+    assert ("the same block twice" in overlap.sentence) == twice
+    assert ("overlap" in overlap.sentence) != twice
+
+
 def test_a_bar_through_a_body_of_too_many_pieces_overlaps_it(monkeypatch: pytest.MonkeyPatch) -> None:
     """A wheel with valleys, one along each half of the x axis: a bar through it, and bars that stand in the valleys."""
     monkeypatch.setattr(convex_pieces, "MOST_PIECES", 10)

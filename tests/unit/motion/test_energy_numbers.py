@@ -5,7 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+import concio
 from concio.analysis.motion.energy import NAMES, EnergyBalance
+from concio.analysis.motion.step_pairs import PairMaker, relative
+from motion_models import G, standing
 
 
 def balance(rounding: float = 0.0, unit: float = 1.0, **changed: list[float]) -> EnergyBalance:
@@ -45,3 +48,18 @@ def test_below_rounding_nothing_moves() -> None:
         assert found.error == pytest.approx(size / max(size, 3e-12))
     assert balance().error == 0.0
     assert EnergyBalance({name: np.zeros(0) for name in NAMES}).error == 0.0
+
+
+@pytest.mark.parametrize("speed", [1.0, -1.0])
+def test_slip_is_remembered_step_by_step_in_the_sense_in_which_pairs_move(speed: float) -> None:
+    """A block slides on: what its pairs remember is the way it went, seen as they see its velocity."""
+    found = concio.dynamics(
+        standing(height=0.4, friction=0.2), duration=8e-3, step=1e-3, gravity=G, velocities={"block": (speed, 0.0)}
+    )
+    end, maker = found.end, PairMaker(found.reference, found.scheme)
+    _, rows, _ = maker.contacts(end.memory, end.placement, end.velocity, end.spin, end.strain)
+    went = end.centre[1] - found.reference.disc.centroids[1]
+    assert abs(went[0]) > 7e-3
+    seen = relative(rows.columns, rows.values, np.array([went[0], went[1], 0.0]))
+    assert end.memory.slid[:, 0] == pytest.approx(seen[:, 1], rel=1e-3)
+    assert abs(seen[:, 1]) == pytest.approx(np.full(2, abs(went[0])), rel=1e-9)

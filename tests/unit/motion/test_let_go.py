@@ -71,6 +71,8 @@ def test_work_is_bounded_and_what_still_moves_is_told_to_move(monkeypatch):
     assert len(found.motion.steps) == 20
     assert (found.verdict.outcome, found.verdict.status) == (Outcome.MOVING, "still_moves")
     assert "still moves after" in found.verdict.sentence
+    assert found.speed == pytest.approx(np.linalg.norm(found.motion.end.velocity[1]))  # the floor stands still
+    assert found.speed > 0
     stopped = concio.let_go(undecided(leaning(1.03)), progress=lambda state: state.iteration >= 5)
     assert stopped.verdict.outcome is Outcome.UNDECIDED
 
