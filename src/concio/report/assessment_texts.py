@@ -27,6 +27,7 @@ PART = {
     "past": r"past (\S+) m across the push(?: of (.*))?",
     "short_of": r"short of (\S+) m across the push(?: of (.*))?",
     "alone": r"('.*') and what it touches",
+    "slides": r"('.*') and what slides with it",
 }
 """Names of parts of a structure, as :class:`concio.analysis.seismic.default_parts.Part` gives them."""
 
@@ -81,8 +82,8 @@ class Texts:
             return f"{whole}; {self.named(part)}" if part else whole
         for kind, pattern in PART.items():
             found = re.fullmatch(pattern, name)
-            if found and kind == "alone":
-                return self.words["part_alone"].format(of=found[1])
+            if found and kind in ("alone", "slides"):
+                return self.words[f"part_{kind}"].format(of=found[1])
             if found:
                 return self.words[f"part_{kind}"].format(at=self.n(float(found[1])), of=found[2] or "").strip()
         return name

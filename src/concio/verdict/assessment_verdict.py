@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 MOST_NAMES = 4
 """More mechanisms than this are counted in a sentence."""
 
+TOGETHER = "and what slides with it"
+"""How the names of the least parts that slide end, as :mod:`concio.analysis.seismic.sliding_parts` gives them."""
+
 APART = 0.01
 """Relative difference of zeta_E and capacity over demand above which a sentence says why."""
 
@@ -266,7 +269,8 @@ class _Words:
             key = "part" if worst.name == "weakest of all" else "part_decides"
             limits.append(self.say(key, bodies=bodies, name=self.name(worst.name)))
         if worst is not None and self.slides_alike(worst):
-            limits.append(self.say("alike", name=self.name(worst.name)))
+            least = any(m.name.endswith(TOGETHER) for m in (*found.mechanisms, *found.others))
+            limits.append(self.say("least_alike" if least else "alike", name=self.name(worst.name)))
         limits += [self.say("brittle", tie=t.name, force=t.strength) for t in found.model.ties if t.strength < t.most
                    and t.yield_force is not None]  # fmt: skip
         apart = [

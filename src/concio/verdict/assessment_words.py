@@ -58,6 +58,9 @@ EN = {
     "motions were searched as well",
     "alike": "other blocks slide at the same alpha_0 as '{name}', with another zeta_E: parts of many shapes do, and "
     "which of them a search meets depends on the order of the blocks in the file; name the parts that matter",
+    "least_alike": "other blocks slide at the same alpha_0 as '{name}', with another zeta_E: each block with what lies "
+    "on it and what stands in its way was followed, and the least zeta_E is reported; further parts that slide are not "
+    "excluded",
     "brittle": "tie '{tie}' breaks before it yields: its force at break, {force} kN, is used instead of its yield "
     "force",
     "corner": "'{name}', {level}: zeta_E = {zeta} is a ratio of accelerations, capacity over demand in "
@@ -174,6 +177,9 @@ IT = {
     "alike": "altri blocchi scorrono allo stesso alpha_0 di «{name}», con un altro zeta_E: lo fanno parti di molte "
     "forme, e quale di esse una ricerca incontra dipende dall'ordine dei blocchi nel file; indicare "
     "le parti che contano",
+    "least_alike": "altri blocchi scorrono allo stesso alpha_0 di «{name}», con un altro zeta_E: ogni blocco con ciò "
+    "che vi poggia e ciò che gli sta davanti è stato seguito, e si dà il minimo zeta_E; altre parti che scorrono non "
+    "sono escluse",
     "brittle": "la catena «{tie}» si rompe prima di snervarsi: si considera la forza alla rottura, {force} kN, non "
     "quella di snervamento",
     "corner": "«{name}», {level}: zeta_E = {zeta} è un rapporto di accelerazioni, capacità su domanda in "

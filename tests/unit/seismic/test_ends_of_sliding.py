@@ -94,7 +94,28 @@ def test_parts_that_slide_at_one_multiplier_are_told() -> None:
     found = concio.assess(wall, site=SITE, direction="left", levels=["SLV"])
     assert found.worst is not None
     assert found.worst.multiplier == pytest.approx(0.4)
-    assert any("slide at the same alpha_0" in line for line in found.verdict.limits)
+    assert any("slide at the same alpha_0" in line and "the least zeta_E is reported" in line
+               for line in found.verdict.limits)  # fmt: skip
     box = replace(wall, bodies=boxes({"ground": (-1.0, 2.0, -0.5, 0.0), "one": (0.0, 1.0, 0.0, 0.5)}))
     alone = concio.assess(box, site=SITE, direction="left", levels=["SLV"])
     assert not any("slide at the same alpha_0" in line for line in alone.verdict.limits)
+
+
+@pytest.mark.parametrize("seed", range(sample(1, 3, 10)))
+def test_no_part_that_is_named_slides_worse_than_what_was_told(seed: int) -> None:
+    """The order of the blocks decided which part was met: zeta_E of one wall was 2.634, and is 1.425 in any order."""
+    rng = np.random.default_rng([46, seed])
+    wall = concio.wall(
+        length=float(rng.choice([1.5, 2.0])), height=float(rng.choice([0.75, 1.0])), block_size=(0.5, 0.25),
+        block="rigid", unit_weight=18.0, friction=float(rng.uniform(0.25, 0.45)), thickness=2.0,
+    )  # fmt: skip
+    shuffled = [wall.bodies[k] for k in rng.permutation(len(wall.bodies))]
+    asked = {"site": SITE, "direction": "left", "levels": ["SLV"]}
+    alone = concio.assess(wall, **asked)
+    other = concio.assess(replace(wall, bodies=tuple(shuffled)), **asked)
+    assert other.zeta == pytest.approx(alone.zeta, rel=1e-6)
+    free = [b for b in wall.bodies if b.kind != "fixed"]
+    pick = free[int(rng.integers(len(free)))]
+    above = [b.name for b in free if b is pick or b.centroid[1] > pick.centroid[1]]
+    named = concio.assess(wall, mechanisms={"mine": above}, **asked)
+    assert named.zeta >= alone.zeta * (1 - 1e-6)

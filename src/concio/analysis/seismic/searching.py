@@ -18,6 +18,7 @@ from concio.analysis.seismic.directions import Push
 from concio.analysis.seismic.examine import Prepared, Terms, examined, prepared
 from concio.analysis.seismic.free_standing import FreeStanding
 from concio.analysis.seismic.local_mechanism import LocalMechanism, NoMechanism
+from concio.analysis.seismic.sliding_parts import sliding_parts
 from concio.analysis.seismic.weakest_mechanism import LARGEST, Found, Mechanisms
 from concio.contact.assembly import Assembly
 from concio.errors import NoEquilibriumError, SolverError
@@ -198,11 +199,25 @@ def _of_push(
             none.append(NoMechanism(name, way, found.multiplier, doubtful))
         else:
             ready.append(prepared(assembly, found, search.push, name, terms.control))
+    candidates |= _sliding(search, seek, (*every.values(), *candidates.values()), teller)
     waiting: list[Prepared] = []
     for name, found in candidates.items():
         if not any(_alike(found, other) for other in (*every.values(), *(w.found for w in waiting))):
             waiting.append(prepared(assembly, found, search.push, name, None))
     return ready, none, waiting, whole.associated
+
+
+def _sliding(search: Search, seek: Mechanisms, known: tuple[Found, ...], teller: _Teller) -> dict[str, Found]:
+    """Return the least parts that slide, where a mechanism slides: those that begin to at its multiplier."""
+    slides = [f.multiplier for f in known if f.mechanics is not None and f.mechanics.slides and f.flow != "associated"]
+    found: dict[str, Found] = {}
+    parts = sliding_parts(search.assembly, search.along) if slides else {}
+    for bodies, name in parts.items():
+        teller.tell(f"{name}, push {search.push.way}: sought")
+        one = seek.sliding(bodies, search.along)
+        if one is not None and any(abs(one.multiplier - at) <= SAME * abs(at) for at in slides):
+            found[name] = one
+    return found
 
 
 def _alike(a: Found, b: Found) -> bool:

@@ -20,12 +20,13 @@ from concio.analysis.seismic.macro_blocks import Mechanics, mechanics_of
 from concio.arguments import closest
 from concio.contact.assembly import Assembly
 from concio.errors import InputError, NoEquilibriumError
+from concio.fem.discretisation import RIGID
 from concio.model.model import Model
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.limits_of_work import COLLAPSE_WORK, LARGEST_SEARCH, UNASKED_WORK
 from concio.solvers.statics.associated_limit import LimitLoad, associated_limit
 from concio.solvers.statics.collapse_search import Tried, find_collapse_state
-from concio.solvers.statics.collapse_state import CollapseState, Motion, judged
+from concio.solvers.statics.collapse_state import CollapseState, Motion, certify_collapse, judged
 from concio.solvers.statics.existence import find_mechanism, statically_admissible
 from concio.verdict.not_standing import BY_A_MECHANISM, of_the_joints
 
@@ -189,6 +190,29 @@ class Mechanisms:
         part = self._part(chosen)
         self._check_stands(part.problem, chosen)
         return replace(self._found(part, quick=quick), moving=chosen)
+
+    def sliding(self, moving: Sequence[int], along: Array) -> Found | None:
+        """Return the mechanism in which some bodies slide together along a push, all others held; None if none is.
+
+        Parameters
+        ----------
+        moving : sequence of int
+        along : (d,) array
+            Horizontal unit vector of the push.
+        """
+        chosen, disc, T = tuple(moving), self.assembly.disc, self.assembly.supported.T
+        every = np.zeros(disc.unknowns)
+        for b in chosen:
+            own = every[disc.offsets[b] : disc.offsets[b + 1]]
+            rigid = disc.shape_of[b] == RIGID
+            own[:] = np.append(along, np.zeros(len(own) - len(along))) if rigid else np.resize(along, len(own))
+        velocity = T.T @ every
+        if not np.allclose(T @ velocity, every, rtol=0.0, atol=1e-9):  # a support holds one of them
+            return None
+        part = self._part(chosen)
+        bound = associated_limit(part.problem, part.push)
+        state = certify_collapse(part.problem, part.push, velocity[part.columns], 0)
+        return None if state is None else replace(self._of_state(part, bound, state), moving=chosen)
 
     def _part(self, chosen: tuple[int, ...] | None) -> _Part:
         """Return the bodies that may move, with the pairs at the ends of their joints."""
