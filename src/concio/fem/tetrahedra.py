@@ -33,6 +33,8 @@ WORST = 0.01
 """Shape below which a mesh is not accepted."""
 ROUNDS = 25
 """Rounds in which slivers are taken away."""
+FEW = 3
+"""Flat tetrahedra between fixed points that are divided in a round; of many, more."""
 ROW = 0.75**0.5
 """Distance of the rows of a triangular lattice, over that of its points."""
 
@@ -117,8 +119,8 @@ def _delaunay(body: Polyhedron, size: float, marks: Sequence[Array], closer: flo
         stays = (winding(body, moved) < 0.5) | (distance_to_surface(body, moved) < 0.25 * size)
         inner[movable] = np.where(stays[:, None], inner[movable], moved)
         fixed = bad[(bad < len(surface)).all(1)]
-        if len(fixed):  # nothing to move: a point in the middle of the flat one
-            new = points[fixed[:3]].mean(1)
+        if len(fixed):  # nothing to move: a point in the middle of the flat one, of a few at a time, or of an eighth
+            new = points[fixed[:: -(-len(fixed) // max(FEW, len(fixed) // 8))]].mean(1)
             new = new[(winding(body, new) > 0.5) & (distance_to_surface(body, new) > 0.1 * size)]
             inner = np.vstack([inner, new])
     return best

@@ -21,7 +21,8 @@ from concio.model.road.earth import ground_of, spread_under, with_fill, with_veh
 from concio.model.road.spread import spread_rules
 from concio.model.road.vehicles import axles_of, vehicles
 from concio.solvers.statics.associated_limit import associated_limit
-from concio.verdict.bridge_verdict import bridge_verdict
+from concio.verdict.bridge_verdict import _loads, bridge_verdict, heaviest_words
+from concio.verdict.bridge_words import Words
 from samples import first
 
 LANE = Vehicle("lane", axles_of([[0.0, 60.0]], [[-100.0, 100.0, 27.0]]), unfavourable=True)
@@ -168,3 +169,18 @@ def test_no_part_at_all_is_read_back() -> None:
     model = crossed(replace(LANE, position=1.0, loaded=()))
     assert concio.loads(concio.dumps(model)).vehicle == model.vehicle
     assert spread_under(model, 1.0).force.sum() == pytest.approx(60.0)
+
+
+def test_the_loads_of_a_vehicle_are_told_with_all_their_factors() -> None:
+    """Axles of 60 and 40 kN and 27 kN/m, of which each has a dynamic factor of 1.2 and a factor of 0.5."""
+    words = Words("en", crossed().report)
+    axles, strip = [[0.0, 60.0], [2.0, 40.0]], [[-100.0, 100.0, 27.0]]
+    for points, spread, told in (
+        (axles, [], "heaviest axle 36 kN, 60 kN in all"),
+        (axles, strip, "heaviest axle 36 kN, 60 kN in axles, and a uniform load of up to 16.2 kN/m"),
+        ([], strip, "a uniform load of up to 16.2 kN/m"),
+    ):
+        vehicle = Vehicle("v", axles_of(points, spread), dynamic=1.2, factor=0.5)
+        assert _loads(vehicle, words).startswith(told)
+        assert _loads(replace(vehicle, unfavourable=True), words).startswith(told)
+        assert heaviest_words(vehicle, 2.0, words)[1] == ("72 kN" if points else "32.4 kN/m")

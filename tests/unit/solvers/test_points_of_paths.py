@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 from concio.solvers.path.path_point import PathPoint
+from concio.solvers.path.paths_apart import _turns
 from path_helpers import weight_then
 from rigid_walls import FERRIS_TIN_LOI, MU, wall
 
@@ -54,3 +57,16 @@ def test_a_point_that_is_somewhere_else_is_left_there(point: PathPoint) -> None:
         np.testing.assert_array_equal(point.x, moved)
     finally:
         point.x = exact
+
+
+@pytest.mark.parametrize(
+    ("loads", "turns"),
+    [
+        ([0.2], [0.2]), ([0.0, 0.4, 1.0], [0.0, 1.0]), ([0.0, 0.0, 0.3, 0.3, 0.5], [0.0, 0.5]),
+        ([0.0, 0.7, 1.0, 1.0, 0.6, 0.3, 0.3, 0.5], [0.0, 1.0, 0.3, 0.5]),
+        ([0.0, 0.5, -0.5, 0.5], [0.0, 0.5, -0.5, 0.5]), ([1.0, 0.6, 0.6, 0.8], [1.0, 0.6, 0.8]),
+    ],
+)  # fmt: skip
+def test_a_leading_part_turns_where_its_load_does(loads: list[float], turns: list[float]) -> None:
+    """It begins, turns and ends there; a load that stays is no turn."""
+    assert _turns(SimpleNamespace(states=[SimpleNamespace(parameter=v) for v in loads])) == turns
