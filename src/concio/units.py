@@ -177,7 +177,7 @@ def _read(value: float | str, kind: str, where: str | None) -> float:
     if math.isnan(number):
         msg = "the value is not a number (NaN)"
         raise InputError(msg, where=where, hint="give a finite value")
-    if not unit or unit == "-":
+    if not unit or (unit == "-" and SYMBOL[kind] == "-"):
         return number
     if kind in _KELVIN:
         return number * _kelvin(unit, kind, value, where)

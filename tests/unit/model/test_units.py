@@ -61,6 +61,7 @@ def test_a_bare_number_is_in_kn_and_m_already(kind: str) -> None:
         (None, "length", "None is not a number"),
         ([1], "length", "is not a number"),
         ("5 kPa m", "length", "is not a length"),
+        ("35 -", "length", "unknown unit '-'"),
     ],
 )
 def test_what_is_not_a_quantity(value: object, kind: str, said: str) -> None:

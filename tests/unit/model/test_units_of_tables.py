@@ -10,6 +10,7 @@ from concio.errors import InputError
 from concio.model.file.assessment_table import assessment_tables
 from concio.model.file.motion_table import motion_table
 from concio.model.file.reading import file_units, loads
+from concio.model.file.writing import dumps
 
 SYSTEMS = [("kN", "m", 1.0, 1.0), ("N", "mm", 1e3, 1e3), ("N", "m", 1e3, 1.0), ("MN", "cm", 1e-3, 1e2)]
 
@@ -77,3 +78,15 @@ def test_an_own_vehicle_is_read_with_its_units_and_never_guessed(force: str, len
         with pytest.raises(InputError, match="has a bare number") as caught:
             loads(head + BRIDGE + bare)
         assert "write its unit" in (caught.value.hint or "")
+
+
+@pytest.mark.parametrize(("force", "length", "f", "m"), SYSTEMS)
+def test_a_text_without_a_unit_is_a_bare_number(force: str, length: str, f: float, m: float) -> None:
+    """In the system of the file too; "35 -" was 35 m in a file in mm."""
+    arch = "[arch]\nspan = {}\nring = {}\nvoussoirs = 9\nunit_weight = {}\n"
+    numbers = (2.0 * m, 0.35 * m, 20.0 * f / m**3)
+    bare, text = (loads(system(force, length) + arch.format(*map(form, numbers))) for form in (repr, "'{!r}'".format))
+    assert dumps(bare) == dumps(text)
+    assert bare.size == pytest.approx(2.7, rel=0.01)
+    with pytest.raises(InputError, match="unknown unit '-'"):
+        loads(system(force, length) + arch.format(numbers[0], "'35 -'", numbers[2]))
