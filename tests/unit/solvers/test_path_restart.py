@@ -17,7 +17,7 @@ from concio.solvers.path.path_state import LinearPath
 from concio.solvers.path.record import Outcome
 from concio.solvers.path.restart import TENTH, is_jump, look_beyond, moves_freely, shrinks, step_between
 from concio.verdict.limit_words import limit_lines
-from path_helpers import energy_error, least_dissipation, weight_then, worst_certificate
+from path_helpers import at_rest, energy_error, least_dissipation, weight_then, worst_certificate
 from rigid_walls import FERRIS_TIN_LOI, MU, block_on_incline, wall
 
 
@@ -135,3 +135,16 @@ def test_what_crushes_sinks_freely_and_moves_no_other_way():
         assert moves_freely(path, state, np.array([0.0, -1.0, 0.0])) is crushes
         for motion in ([0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]):
             assert not moves_freely(path, state, np.array(motion))
+
+
+def test_what_has_crushed_before_is_free_to_sink_as_far_as_it_has_come_back() -> None:
+    """Joints crushed by 2 mm touch where the block stands 2 mm lower; 1 mm above that it is free to sink, or rise."""
+    column = concio.column(width=0.4, height=1.0, blocks=1, block="rigid", unit_weight=20.0)
+    problem = concio.assemble(column).problem({"dead": 0.0})
+    m, crushed, down = problem.pairs, 2e-3, np.array([0.0, -1.0, 0.0])
+    assert (problem.C_n @ down < 0).all()
+    path = LinearPath(problem, np.zeros(problem.unknowns))
+    for sunk, free in ((0.5 * crushed, True), (crushed, False)):
+        point = replace(at_rest(path), displacement=sunk * down, offset=np.full(m, crushed))
+        assert moves_freely(path, point, down) is free
+        assert moves_freely(path, point, -down)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ import pytest
 
 import concio
 from concio.model.file.keys import find_key, with_values
+from concio.studies.analyses import at_factors
 from concio.studies.bridges import openturns_sample, salib_problem, sample_of_openturns, variables_of_salib
 from concio.studies.distributions import FAMILIES, Distribution
 from concio.studies.sampling import draw
@@ -454,3 +456,20 @@ def test_figures_and_report_of_a_study(tmp_path: Path) -> None:
     assert found._repr_html_().startswith("<div>")
     assert len(repr(found).splitlines()) <= 12
     assert list(found.frame().columns)[:3] == ["mu", "s", "multiplier"]
+
+
+def test_a_model_at_factors_has_loads_and_moved_supports_times_those_of_their_groups() -> None:
+    """A group that is not named keeps what it has, and supports that only hold stay as they are."""
+    column = concio.column(width=0.4, height=1.0, blocks=1, block="rigid", horizontal=0.1)
+    held = concio.Support("held", "b1", edge=((-0.2, 1.0), (-0.2, 1.0)), directions="x", group="sinks")
+    sinks = concio.Support("sinks", "ground", displacement=(0.0, -0.01), rotation=0.02, group="sinks")
+    other = concio.Support("other", "ground", displacement=(0.03, 0.0), group="other")
+    model = replace(column, supports=(held, sinks, other))
+    found = at_factors(model, {"live": 3.0, "sinks": 2.0})
+    for load, was in zip(found.loads, model.loads, strict=True):
+        assert load.value == pytest.approx([(3.0 if was.group == "live" else 1.0) * v for v in was.value])
+    assert {load.group for load in model.loads} == {"dead", "live"}
+    assert found.supports[0] == model.supports[0]
+    assert found.supports[1].displacement == pytest.approx((0.0, -0.02))
+    assert found.supports[1].rotation == pytest.approx(0.04)
+    assert found.supports[2] == model.supports[2]
