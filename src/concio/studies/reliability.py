@@ -4,7 +4,8 @@ Variables x are functions of independent standard normal numbers u, x_i = F_i^{-
 positive where the structure holds. The index of Hasofer and Lind is the distance beta of the surface g = 0 from the
 origin of u, its nearest point is the design point, and Phi(-beta) is the probability of failure where g is linear in u,
 and an approximation otherwise. The point is found by the iteration of Hasofer, Lind, Rackwitz and Fiessler with a line
-search on a merit function. Of several nearest points it finds one.
+search on a merit function; where the surface is so curved about it that steps go back and forth, by sequential
+quadratic programming (SLSQP of SciPy), checked by the same conditions. Of several nearest points it finds one.
 
 Sources: A. M. Hasofer, N. C. Lind, J. Eng. Mech. Div. 100 (1974) 111-121; R. Rackwitz, B. Fiessler, Comput. Struct. 9
 (1978) 489-494; Y. Zhang, A. Der Kiureghian, in: Reliability and Optimization of Structural Systems (1995) 297-304.
@@ -15,6 +16,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -35,6 +37,8 @@ LimitState = Callable[[dict[str, float]], Any]
 
 CLOSE = 1e-10
 """Distance of the last two points, relative to one plus their distance from the origin, at which the iteration ends."""
+NEARLY = 1e-6
+"""The same of a point found by quadratic programmes; the index, a least distance, is then off by its square."""
 STEP = 1e-4
 """Step in standard deviations of differences, where a limit state gives no gradient."""
 SEEN = 1e-4
@@ -135,12 +139,24 @@ def reliability(limit_state: LimitState, variables: Sequence[Variable], *, most:
     search = _Search(limit_state, variables)
     u = np.zeros(len(search.names))
     g, slope = search.at(u)
-    first, weight = max(abs(g), float(np.linalg.norm(slope))) or 1.0, 0.0  # g may be zero to rounding from the start
+    if not 0 < np.linalg.norm(slope) < np.inf:
+        msg = "the limit state does not depend on any of the variables there"
+        raise InputError(msg, where=", ".join(f"{k} = {v:.4g}" for k, v in search.values(u).items()))
+    first = max(abs(g), float(np.linalg.norm(slope)))  # g may be zero to rounding from the start
+    found = _by_steps(search, u, g, slope, first, most) or _by_programming(search, first, most)
+    if found is None:
+        msg = f"no design point was found in {search.evaluations} evaluations of the limit state"
+        raise SolverError(msg, hint="is it smooth, and does it become zero? Sample it with concio.study")
+    return found
+
+
+def _by_steps(search: _Search, u: Array, g: float, slope: Array, first: float, most: int) -> Reliability | None:
+    """Return the design point to which steps to tangent planes lead, with a line search; None where they do not."""
+    weight = 0.0
     for _ in range(most):
         size = float(np.linalg.norm(slope))
-        if not size > 0 or not math.isfinite(size):
-            msg = "the limit state does not depend on any of the variables there"
-            raise InputError(msg, where=", ".join(f"{k} = {v:.4g}" for k, v in search.values(u).items()))
+        if not 0 < size < math.inf:
+            return None
         step = _step(u, g, slope)
         if np.linalg.norm(step) <= CLOSE * (1.0 + np.linalg.norm(u)) and abs(g) <= 1e-8 * first:
             return search.found(u, g / first, slope / size)
@@ -158,10 +174,39 @@ def reliability(limit_state: LimitState, variables: Sequence[Variable], *, most:
                 break
             share /= 2
         if not math.isfinite(g_new):
-            break
+            return None
         u, g, slope = new, g_new, slope_new
-    msg = f"no design point was found in {search.evaluations} evaluations of the limit state"
-    raise SolverError(msg, hint="is it smooth, and does it become zero? Sample it with concio.study")
+    return None
+
+
+def _by_programming(search: _Search, first: float, most: int) -> Reliability | None:
+    """Return the point nearest to the origin on the surface g = 0 by quadratic programmes, if its conditions hold."""
+    from scipy.optimize import minimize
+
+    known = lru_cache(maxsize=4)(lambda point: search.at(np.array(point)))
+
+    def at(u: Array) -> tuple[float, Array]:
+        return known(tuple(u.tolist()))
+
+    programme: Any = minimize
+    answer = programme(
+        lambda u: 0.5 * float(u @ u),
+        np.zeros(len(search.names)),
+        jac=lambda u: u,
+        method="SLSQP",
+        constraints={"type": "eq", "fun": lambda u: at(u)[0] / first, "jac": lambda u: at(u)[1] / first},
+        options={"maxiter": most, "ftol": NEARLY**2},
+    )
+    u = np.asarray(answer.x)
+    if not np.isfinite(u).all():
+        return None
+    g, slope = at(u)
+    size = float(np.linalg.norm(slope))
+    if not (0 < size < math.inf and abs(g) <= 1e-8 * first):
+        return None
+    if np.linalg.norm(_step(u, g, slope)) > NEARLY * (1.0 + np.linalg.norm(u)):
+        return None
+    return search.found(u, g / first, slope / size)
 
 
 def _step(u: Array, g: float, slope: Array) -> Array:

@@ -84,6 +84,16 @@ def test_the_probability_is_that_of_a_sample_where_the_limit_state_is_plane() ->
     assert found.probability == pytest.approx(share, abs=1e-4)
 
 
+@pytest.mark.parametrize("radius", [0.05, 0.005])
+def test_the_nearest_point_of_a_sharp_surface(radius: float) -> None:
+    """A needle that fails: the steps of Hasofer and Lind go back and forth beside it, the programmes end at it."""
+    x, y = (concio.variable(name, "normal", mean=0.0, sd=1.0) for name in "xy")
+    found = concio.reliability(lambda v: (v["x"] - 4.0) ** 2 + (v["y"] - 1.2) ** 2 - radius**2, [x, y])
+    away = math.hypot(4.0, 1.2)
+    assert found.beta == pytest.approx(away - radius, rel=1e-9)
+    assert found.point == pytest.approx({"x": 4.0 * (1 - radius / away), "y": 1.2 * (1 - radius / away)}, abs=1e-6)
+
+
 def test_a_curved_limit_state_has_the_nearest_point() -> None:
     variables = [concio.variable(name, "normal", mean=0.0, sd=1.0) for name in "xy"]
     found = concio.reliability(lambda v: 9.0 - (v["x"] + 1.0) ** 2 - 4.0 * (v["y"] + 0.3) ** 2, variables)
