@@ -27,7 +27,7 @@ PART = {
     "past": r"past (\S+) m across the push(?: of (.*))?",
     "short_of": r"short of (\S+) m across the push(?: of (.*))?",
     "alone": r"('.*') and what it touches",
-    "slides": r"('.*') and what slides with it",
+    "slides": r"(.*) and what slides with it",
 }
 """Names of parts of a structure, as :class:`concio.analysis.seismic.default_parts.Part` gives them."""
 

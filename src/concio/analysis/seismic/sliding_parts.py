@@ -49,5 +49,5 @@ def sliding_parts(assembly: Assembly, along: Array) -> dict[tuple[int, ...], str
     for i in sorted(set(range(count)) - fixed, key=lambda i: model.bodies[i].name):
         part = {int(k) for k in breadth_first_order(graph, i, return_predecessors=False)}
         if not part & fixed:
-            found.setdefault(tuple(sorted(part)), f"'{model.bodies[i].name}' and what slides with it")
+            found.setdefault(tuple(sorted(part)), f"{model.bodies[i].name} and what slides with it")
     return found if len(found) <= MOST_SLIDING else {}
