@@ -156,6 +156,12 @@ def quantity(value: float | str, kind: str, *, where: str | None = None) -> floa
     return number
 
 
+def is_bare(text: str) -> bool:
+    """Return whether a quantity is a number without a unit."""
+    match = _VALUE.match(text)
+    return match is not None and not match.group(2)
+
+
 def _read(value: float | str, kind: str, where: str | None) -> float:
     if not isinstance(value, str):
         try:

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from concio.cli.options import EngineOf, File, Json, Language, Quiet, UnitsOf, loaded
+from concio.cli.options import EngineOf, File, Json, Language, Quiet, UnitsOf, loaded, measured
 from concio.cli.outcome import answer, guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.progress import progress_bar, verdict_so_far
@@ -56,18 +56,17 @@ def bridge(
     Example: concio bridge bridge.toml --out result
     """
     import concio
-    from concio.units import quantity
     from concio.verdict.bridge_verdict import bridge_lines
 
     if out is not None:
         check_directory(out)
     model = loaded(file, units, engine)
     options: dict[str, Any] = {"required": required, "worst": worst, "checked": checked, "sensitivity": sensitivity}
-    options |= {"step": None if step is None else quantity(step, "length", where="--step")}
-    options |= {"fine": quantity(fine, "length", where="--fine"), "others": tuple(vehicle or ())}
+    options |= {"step": None if step is None else measured(step, "length", "--step", file)}
+    options |= {"fine": measured(fine, "length", "--fine", file), "others": tuple(vehicle or ())}
     distances = _distances(apart or "")
-    options |= {"second": second, "apart": [quantity(text, "length", where="--apart") for text in distances]}
-    options |= {"settled": dict(_settlement(text) for text in settle or ()), "span_rise": mexe_factor}
+    options |= {"second": second, "apart": [measured(text, "length", "--apart", file) for text in distances]}
+    options |= {"settled": dict(_settlement(text, file) for text in settle or ()), "span_rise": mexe_factor}
     with progress_bar(shown=not json) as progress:
         found = concio.assess_bridge(model, progress=progress, **options)
     told = {"status": found.verdict.status, **found.summary()}
@@ -98,13 +97,12 @@ def _distances(text: str) -> list[str]:
     return [part.strip() for part in text.split(",") if part.strip()]
 
 
-def _settlement(text: str) -> tuple[str, float]:
+def _settlement(text: str, file: Path) -> tuple[str, float]:
     """Return the name of a fixed block and how far it settles [m]."""
     from concio.errors import InputError
-    from concio.units import quantity
 
     name, sign, far = text.rpartition("=")
     if not sign:
         msg = f"--settle {text!r} names no distance"
         raise InputError(msg, hint="write 'pier1 ground=10 mm'")
-    return name.strip(), quantity(far.strip(), "length", where="--settle")
+    return name.strip(), measured(far.strip(), "length", "--settle", file)

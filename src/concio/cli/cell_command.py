@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from concio.cli.options import EngineOf, File, Json, Quiet, UnitsOf, loaded
+from concio.cli.options import EngineOf, File, Json, Quiet, UnitsOf, loaded, measured
 from concio.cli.outcome import answer, guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.progress import progress_bar
@@ -64,13 +64,13 @@ def cell(
     if out is not None:
         check_directory(out)
     directions = [components(text, "--direction") for text in direction or ()]
-    base = components(stress, "--stress") if stress is not None else (0.0, 0.0, 0.0)
+    base = components(stress, "--stress", file) if stress is not None else (0.0, 0.0, 0.0)
     model = loaded(file, units, engine)
     if model.periods is None:
         msg = "this model is not a periodic cell"
         hint = "start from: concio new cell; or give the blocks of a model periods = [[x1, y1], [x2, y2]]"
         raise InputError(msg, where=str(file), hint=hint)
-    asked = [stage_of(text, k) for k, text in enumerate(stage or (), 1)] or list(model.stages)
+    asked = [stage_of(text, k, file) for k, text in enumerate(stage or (), 1)] or list(model.stages)
     own = PeriodicCell.of(model)
     moduli, none = _moduli(own)
     domain: StrengthDomain | None = None
@@ -106,8 +106,10 @@ def _moduli(cell: PeriodicCell) -> tuple[Moduli | None, str]:
         return None, error.what
 
 
-def components(text: str, where: str) -> tuple[float, float, float]:
+def components(text: str, where: str, file: Path | None = None) -> tuple[float, float, float]:
     """Return a stress from a text such as ``xx=1,yy=-50 kPa``; components that are not named are zero.
+
+    Without a ``file`` it is a direction, of any size.
 
     Raises
     ------
@@ -124,11 +126,14 @@ def components(text: str, where: str) -> tuple[float, float, float]:
         if not sign or name.strip() not in COMPONENTS:
             msg = f"'{part}' is not a component of a stress"
             raise InputError(msg, where=where, hint=f"write for example {where} xx=1,yy=-0.5; components xx, yy, xy")
-        values[name.strip()] = quantity(value.strip(), "stress", where=where)
+        number = value.strip()
+        values[name.strip()] = (
+            quantity(number, "stress", where=where) if file is None else measured(number, "stress", where, file)
+        )
     return values["xx"], values["yy"], values["xy"]
 
 
-def stage_of(text: str, number: int) -> Stage:
+def stage_of(text: str, number: int, file: Path) -> Stage:
     """Return a stage of a path from a text such as ``stress yy=-100,strain xy=1e-3``.
 
     Raises
@@ -138,7 +143,6 @@ def stage_of(text: str, number: int) -> Stage:
     """
     from concio.errors import InputError
     from concio.model.stages import Stage
-    from concio.units import quantity
 
     factors = {}
     for part in text.split(","):
@@ -147,5 +151,5 @@ def stage_of(text: str, number: int) -> Stage:
         if not sign or not word:
             msg = f"'{part}' is neither a strain nor a stress"
             raise InputError(msg, where="--stage", hint="write for example --stage 'stress yy=-100,strain xy=1e-3'")
-        factors[word] = quantity(value.strip(), "stress" if word.startswith("stress ") else "number", where="--stage")
+        factors[word] = measured(value.strip(), "stress" if word.startswith("stress ") else "number", "--stage", file)
     return Stage(f"{number}: {text}", factors)

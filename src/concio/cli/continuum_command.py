@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from concio.cli.options import EngineOf, Factors, File, Json, Quiet, UnitsOf, factors_of, loaded
+from concio.cli.options import EngineOf, Factors, File, Json, Quiet, UnitsOf, factors_of, loaded, measured
 from concio.cli.outcome import answer, guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.progress import progress_bar
@@ -49,7 +49,6 @@ def continuum(
     from concio.cli.continuum_lines import continuum_facts, continuum_lines
     from concio.cli.halved import halved_file
     from concio.errors import InputError
-    from concio.units import quantity
     from concio.verdict.continuum_verdict import continuum_verdict
 
     if out is not None:
@@ -60,7 +59,7 @@ def continuum(
     if halve and factor:
         msg = "--factor does not go with --halve"
         raise InputError(msg, hint="write the loads into the file as they are to act")
-    size = None if mesh_size is None else quantity(mesh_size, "length", where="--mesh-size")
+    size = None if mesh_size is None else measured(mesh_size, "length", "--mesh-size", file)
     own = None if cell is None else concio.load(cell)
     live = tuple(group) if group else None
     found: ContinuumComparison

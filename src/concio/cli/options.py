@@ -85,3 +85,30 @@ def factors_of(texts: list[str] | None) -> dict[str, float]:
             raise InputError(msg, where="--factor", hint="write for example --factor live=1.5")
         factors[group.strip()] = quantity(value, "number", where=f"--factor {group.strip()}")
     return factors
+
+
+def measured(text: str, kind: str, where: str, file: Path) -> float:
+    """Return a quantity of the command line [kN, m]; a bare number where the file has a system of its own is refused.
+
+    Raises
+    ------
+    InputError
+        Not a quantity of this kind, or a number without a unit that the file would read otherwise.
+    """
+    from concio.errors import InputError
+    from concio.model.file.reading import STDIN, file_units, read_tables
+    from concio.units import SYMBOL, is_bare, quantity
+
+    value = quantity(text, kind, where=where)
+    if not value or kind == "number" or not is_bare(text):
+        return value
+    if file == STDIN:
+        msg = f"'{text}' has no unit, and a file from standard input may have units of its own"
+        raise InputError(msg, where=where, hint=f"write for example '{text} {SYMBOL[kind]}'")
+    tables = read_tables(file)
+    if file_units(tables, str(file)).factor(kind) == 1.0:
+        return value
+    msg = f"'{text}' has no unit, and {file} has units of its own"
+    length = tables["units"].get("length", "m")
+    unit = length if kind == "length" else f"{tables['units'].get('force', 'kN')}/{length}2"
+    raise InputError(msg, where=where, hint=f"write '{text} {unit}', or another unit")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from concio.cli.options import EngineOf, File, Json, Language, Quiet, UnitsOf, factors_of, loaded
+from concio.cli.options import EngineOf, File, Json, Language, Quiet, UnitsOf, factors_of, loaded, measured
 from concio.cli.outcome import answer, guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.progress import progress_bar, verdict_so_far
@@ -65,12 +65,11 @@ def path(
     from concio.errors import InputError
     from concio.model.self_weight import usual_order
     from concio.post.path_curve import most_moving
-    from concio.units import quantity
 
     if out is not None:
         check_directory(out)
     assembly = concio.assemble(loaded(file, units, engine))
-    control = None if point is None else control_of(point, along, assembly.model.dim)
+    control = None if point is None else control_of(point, along, file, assembly.model.dim)
     if control is None and until is not None:
         msg = "it is a displacement of a control point, and no control point is given"
         raise InputError(msg, where="--until", hint="add --point BODY,X,Y")
@@ -83,7 +82,7 @@ def path(
         control = control or stages[-1].control
     if until is not None:
         last = stages[-1]
-        stages[-1] = Stage(last.name, last.factors, control, quantity(until, "length", where="--until"), steps)
+        stages[-1] = Stage(last.name, last.factors, control, measured(until, "length", "--until", file), steps)
     with progress_bar(shown=not json) as progress:
         found = run_path(assembly, stages, method=method, brittle=brittle, progress=progress)
     chosen = control or most_moving(found)
@@ -104,17 +103,16 @@ def _words(factors: dict[str, float]) -> str:
     return ", ".join(f"{group} = {value:g}" for group, value in factors.items())
 
 
-def control_of(text: str, along: str, dim: int = 2) -> ControlPoint:
+def control_of(text: str, along: str, file: Path, dim: int = 2) -> ControlPoint:
     """Return the control point that a text BODY,X,Y names, with the direction of its motion."""
     from concio.analysis.path import ControlPoint
     from concio.errors import InputError
-    from concio.units import quantity
 
     parts = text.rsplit(",", dim)
     if len(parts) != dim + 1:
         msg = f"'{text}' is not a point of a body"
         raise InputError(msg, where="--point", hint="write for example --point c03-b02,1.0,0.75" + ",0.3" * (dim - 2))
-    at = tuple(quantity(part.strip(), "length", where="--point") for part in parts[1:])
+    at = tuple(measured(part.strip(), "length", "--point", file) for part in parts[1:])
     axis = "xyz".index(along[-1])
     if axis >= dim:
         msg = "the model is in the plane"

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from concio.cli.options import EngineOf, Factors, File, Json, Language, Quiet, UnitsOf, factors_of, loaded
+from concio.cli.options import EngineOf, Factors, File, Json, Language, Quiet, UnitsOf, factors_of, loaded, measured
 from concio.cli.outcome import answer, guarded, print_json, say
 from concio.cli.output import check_directory, replaced_directory
 from concio.cli.path_command import control_of
@@ -88,7 +88,6 @@ def push(
     from concio.analysis.motion.push_result import PushEnding
     from concio.cli.motion_lines import push_lines, write_motion
     from concio.errors import InputError
-    from concio.units import quantity
 
     check_out(out, film, series)
     if load and point is not None:
@@ -96,11 +95,11 @@ def push(
         raise InputError(msg, where="--load, --point", hint="leave one of them out")
     model = loaded(file, units, engine)
     kind = "number" if load else "length"
-    sizes = [None if t is None else quantity(t, kind, where=w) for t, w in ((step, "--step"), (until, "--until"))]
+    sizes = [None if t is None else measured(t, kind, w, file) for t, w in ((step, "--step"), (until, "--until"))]
     towards = None if direction is None else _direction(direction, model.dim)
     with progress_bar(shown=not json) as progress:
         found = concio.push(
-            model, control="load" if load else None if point is None else control_of(point, along, model.dim),
+            model, control="load" if load else None if point is None else control_of(point, along, file, model.dim),
             live=() if weights else group or None, direction=towards, step=sizes[0], until=sizes[1], smallest=smallest,
             factors=factors_of(factor), progress=progress,
         )  # fmt: skip

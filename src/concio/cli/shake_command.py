@@ -96,7 +96,7 @@ def shake(
     if restitution is not None:
         options["restitution"] = restitution
     if point:
-        options["points"] = tuple(control_of(text, "x", model.dim) for text in point)
+        options["points"] = tuple(control_of(text, "x", file, model.dim) for text in point)
     if start is not None:
         earlier = load_motion(start)
         if not isinstance(earlier, DynamicsResult):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 import subprocess
 import sys
 from collections import defaultdict
@@ -156,3 +157,27 @@ def test_numbers_of_a_limit_are_printed_as_they_are_found_where_there_is_no_term
     assert first.removeprefix("so far:") in out.splitlines(), "the answer repeats it"
     assert run("limit", wall, "--quick", "--quiet")[1:] == ("", "")
     assert run("limit", wall, "--quick", "--json")[2] == ""
+
+
+LENGTHS = [
+    ("push wall.toml --until {}", "20", "20 mm"),
+    ("push wall.toml --step {}", "20", "2 cm"),
+    ("push wall.toml --point 'c02-b01,{},500 mm'", "450", "450 mm"),
+    ("path wall.toml --point 'c02-b01,450 mm,500 mm' --until {}", "3", "3 mm"),
+    ("continuum wall.toml --mesh-size {}", "300", "300 mm"),
+]
+
+
+@pytest.mark.parametrize(("command", "bare", "stated"), LENGTHS)
+def test_a_bare_length_of_the_command_line_is_not_read_in_metres_beside_a_file_in_millimetres(
+    wall: Path, command: str, bare: str, stated: str
+) -> None:
+    wall.write_text('[units]\nlength = "mm"\nforce = "N"\n' + WALL)
+    answer = CliRunner().invoke(app, shlex.split(command.format(bare)))
+    assert answer.exit_code == 2
+    assert f"'{bare}' has no unit" in answer.stderr
+    assert f"write '{bare} mm'" in answer.stderr
+    told = CliRunner().invoke(app, shlex.split(command.format(stated)))
+    assert "has no unit" not in told.stderr
+    wall.write_text(WALL)
+    assert "has no unit" not in CliRunner().invoke(app, shlex.split(command.format(bare))).stderr
