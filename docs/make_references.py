@@ -218,8 +218,8 @@ def commands() -> str:
         "",
         "`concio COMMAND --help` prints the same. " + EXIT_CODES,
         "",
-        "A length or a stress without a unit is in kN and m. Where the file has `[units]` of its own it is refused: write "
-        "`--until '20 mm'`.",
+        "A length or a stress without a unit is in kN and m. Where the file has `[units]` of its own it is refused: "
+        "write `--until '20 mm'`.",
         "",
         "`--install-completion` lets the shell complete commands and options. This page is written from the commands "
         "by `docs/make_references.py`.",
