@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from test_motions_apart import same
 from test_parts_apart import LAWS, another, box, model, stack
@@ -29,6 +29,7 @@ def numbers(found, names):
     st.sampled_from(["rigid", "rigid", "elastic"]), st.sampled_from(list(LAWS)), st.floats(-3, 2), st.floats(-6, 6),
     st.booleans(), st.sampled_from([None, "load", "point"]),
 )  # fmt: skip
+@example(kind="rigid", law="cohesive", size=0.0, weight=2.0, first=False, control="point")  # the other gives way at 0.53
 def test_an_unconnected_body_changes_no_digit_of_a_push(kind, law, size, weight, first, control):
     asked = {"until": 0.1} if control != "load" else {"until": 0.3, "step": 0.1}
     if control is not None:
@@ -40,6 +41,11 @@ def test_an_unconnected_body_changes_no_digit_of_a_push(kind, law, size, weight,
     assert both.certified
     if control != "point" and any("around 'other'" in line for line in both.verdict.limits):
         assert both.peak <= alone.peak * (1 + 1e-9), "the one with the least peak leads"
+        return
+    if control == "point" and both.ending is PushEnding.NO_EQUILIBRIUM is not alone.ending:
+        only = concio.push(model(2, there, kind, law, weight=10.0**weight), until=0.1)
+        assert both.peak <= only.peak * (1 + 1e-9) < alone.peak, "the other carries less than the curve asks for"
+        assert both.verdict.exit_code == 4
         return
     assert both.ending is alone.ending
     if control != "load":
