@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from concio.model.road.spread import SpreadRule, spread, spread_rules
+from concio.model.road.spread import SpreadRule, _kinks, spread, spread_rules
 from concio.model.road.surface import Road, Surface
 
 X = np.array([-3.0, -1.3, -0.4, 0.5, 0.9, 2.2, 4.0])
@@ -64,3 +64,20 @@ def test_two_footprints_add_their_forces_and_moments() -> None:
     both = spread(rule, placed, line, one + other)
     assert both.force == pytest.approx(force[both.piece], rel=1e-12)
     assert both.force * both.at[:, 0] == pytest.approx(moment[both.piece], rel=1e-9)
+
+
+def test_pieces_are_cut_where_the_pressure_begins_changes_and_ends() -> None:
+    """On sloping pieces the widened base meets the place, the base itself and the middle of the load."""
+    rng = np.random.default_rng(4)
+    left = rng.uniform(-3.0, 1.0, 40)
+    right, low, high = left + rng.uniform(0.2, 2.0, 40), rng.uniform(0.2, 2.0, 40), rng.uniform(0.2, 2.0, 40)
+    x, base, rule = 0.3, 0.5, spread_rules()["uniform 1:2"]
+    shares = _kinks(rule, (left, right), (low, high), x, base)
+    inside = (shares > 0) & (shares < 1)
+    assert inside.any(axis=0).all()
+    place = left[:, None] + shares * (right - left)[:, None]
+    depth = low[:, None] + shares * (high - low)[:, None]
+    away, wide = place - x, 0.5 * base + 0.5 * rule.along * depth
+    for column, wanted in enumerate((-wide, -0.5 * base, wide, 0.5 * base, 0.0)):
+        k = inside[:, column]
+        assert away[k, column] == pytest.approx(np.broadcast_to(wanted, away.shape)[k, column], abs=1e-12)

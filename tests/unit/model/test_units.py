@@ -74,3 +74,10 @@ def test_what_is_not_a_quantity(value: object, kind: str, said: str) -> None:
 @given(st.floats(-LARGEST, LARGEST), st.sampled_from(sorted(KINDS)))
 def test_writing_and_reading_a_number_with_its_unit(number: float, kind: str) -> None:
     assert quantity(f"{number!r} {SYMBOL[kind]}", kind) == number
+
+
+def test_a_plain_number_with_an_unknown_unit_and_one_with_an_angle_are_told_apart() -> None:
+    with pytest.raises(InputError, match="unknown unit 'foo' in '3 foo'"):
+        quantity("3 foo", "number")
+    with pytest.raises(InputError, match="'3 deg' must be a plain number"):
+        quantity("3 deg", "number")

@@ -10,6 +10,7 @@ from scipy.integrate import quad
 
 import concio
 import concio.solvers.stepping.solver as step_solver
+from concio.analysis.motion.certified import measures
 from concio.analysis.motion.dynamics_result import Ending
 from concio.analysis.motion.state import MotionState
 from concio.contact.reference import Reference
@@ -343,3 +344,18 @@ def test_energy_below_rounding_grows_with_weight_and_size():
     weight, size = 20.0 * 0.4 * 1.2, float(np.ptp(np.concatenate([b.outline for b in light.bodies]), axis=0).max())
     assert told[1] == pytest.approx(4.0 * told[0])
     assert 0.9e-9 < told[0] / (weight * size) < 1.5e-9
+
+
+def test_steps_without_loads_are_measured_by_the_momentum_of_the_step():
+    """By mass times velocity over the step, and by one where nothing moves either; the velocity is what it brings."""
+    body = concio.Body("b", [(0, 0), (0.5, 0), (0.5, 2), (0, 2)], kind="rigid", material="block")
+    model = concio.Model((body,), {"block": concio.Rigid(unit_weight=20.0)}, {"joint": concio.JointLaw(0.5)})
+    reference, h = Reference.of(model, G), 2e-3
+    mass = 20.0 / G
+    x0, idle = np.array([0.3, -0.4, 0.0]), np.zeros(3)
+    force, speed = measures(reference, idle, x0, h)
+    assert force == pytest.approx(0.7 * mass / h, rel=1e-12)
+    assert speed == pytest.approx(0.7, rel=1e-12)
+    assert measures(reference, idle, idle, h) == pytest.approx((1.0, h / mass))
+    acting = np.array([0.0, -20.0, 0.0])
+    assert measures(reference, acting, x0, h) == pytest.approx((20.0, h * G))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -217,3 +217,18 @@ def test_total_load_along_a_path():
 def test_motions_not_of_length_one_are_refused():
     with pytest.raises(InputError, match="length one"):
         replace(floating_bar(), R=sp.csc_array(np.array([[1.0], [1.0]])))
+
+
+@pytest.mark.parametrize("which", range(3))
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_one_entry_that_is_no_number_is_no_certificate(which, value):
+    """Also where other entries of the same array are numbers."""
+    law = {f.name: np.repeat(getattr(one_pair().laws, f.name), 2) for f in fields(Laws)}
+    problem = replace(
+        one_pair(), C_n=sp.csr_array([[0.0, 1.0], [0.0, 1.0]]), C_t=sp.csr_array([[-1.0, 0.0], [-1.0, 0.0]]),
+        gap=np.zeros(2), laws=Laws(**law), slip_origin=np.zeros((2, 1)), area=np.ones(2),
+    )  # fmt: skip
+    parts = [np.zeros(2), np.zeros(2), np.zeros((2, 1))]
+    assert np.isfinite(certify(problem, *parts).worst)
+    parts[which].flat[1] = value
+    assert certify(problem, *parts).worst == np.inf
