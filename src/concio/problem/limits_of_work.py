@@ -126,3 +126,7 @@ LEAST_LET_GO = 500
 
 MOST_LET_GO = 10_000
 """Largest number of steps that are spent on it."""
+
+MOST_SLIDING = 150
+"""Largest number of parts that slide which an assessment in the plane follows; in space, where a curve takes many
+programmes, it follows none."""

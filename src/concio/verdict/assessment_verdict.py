@@ -11,6 +11,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from concio.display import number
+from concio.problem.limits_of_work import MOST_SLIDING
 from concio.verdict.assessment_notes import assessment_notes
 from concio.verdict.assessment_words import WORDS
 from concio.verdict.attention import attention_of, joints_not_made
@@ -269,8 +270,7 @@ class _Words:
             key = "part" if worst.name == "weakest of all" else "part_decides"
             limits.append(self.say(key, bodies=bodies, name=self.name(worst.name)))
         if worst is not None and self.slides_alike(worst):
-            least = any(m.name.endswith(TOGETHER) for m in (*found.mechanisms, *found.others))
-            limits.append(self.say("least_alike" if least else "alike", name=self.name(worst.name)))
+            limits.append(self.say("least_alike" if self.least_parts() else "alike", name=self.name(worst.name)))
         limits += [self.say("brittle", tie=t.name, force=t.strength) for t in found.model.ties if t.strength < t.most
                    and t.yield_force is not None]  # fmt: skip
         apart = [
@@ -306,6 +306,12 @@ class _Words:
             and not math.isclose(m.least, worst.least, rel_tol=1e-6)
             for m in (*self.found.mechanisms, *self.found.others)
         )  # fmt: skip
+
+    def least_parts(self) -> bool:
+        """Return whether the least parts that slide were followed: in the plane, where they are not too many."""
+        bodies = self.found.model.bodies
+        few = self.found.model.dim == 2 and sum(b.kind != "fixed" for b in bodies) <= MOST_SLIDING
+        return few or any(m.name.endswith(TOGETHER) for m in (*self.found.mechanisms, *self.found.others))
 
     def strips(self) -> str:
         """Return how a facade was searched out of its plane."""

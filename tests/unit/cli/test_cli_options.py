@@ -17,6 +17,8 @@ from typer.testing import CliRunner
 import concio
 from commands import run
 from concio.cli.main import EXIT_CODES, app
+from concio.cli.options import measured
+from concio.errors import InputError
 from pillars import pillar, sideways
 
 COMMANDS = typer.main.get_command(app).commands
@@ -29,6 +31,13 @@ block = "rigid"
 unit_weight = 20
 friction = 0.6
 horizontal = 0.1
+"""
+CELL = """
+[cell]
+bond = "running"
+block_size = [250, 55]
+block = "rigid"
+friction = 0.6
 """
 
 
@@ -160,24 +169,29 @@ def test_numbers_of_a_limit_are_printed_as_they_are_found_where_there_is_no_term
 
 
 LENGTHS = [
-    ("push wall.toml --until {}", "20", "20 mm"),
-    ("push wall.toml --step {}", "20", "2 cm"),
-    ("push wall.toml --point 'c02-b01,{},500 mm'", "450", "450 mm"),
-    ("path wall.toml --point 'c02-b01,450 mm,500 mm' --until {}", "3", "3 mm"),
-    ("continuum wall.toml --mesh-size {}", "300", "300 mm"),
+    ("push wall.toml --until 20", "--until", "20 mm"),
+    ("push wall.toml --step 20", "--step", "20 mm"),
+    ("push wall.toml --point 'c02-b01,450,500 mm'", "--point", "450 mm"),
+    ("path wall.toml --point 'c02-b01,450 mm,500 mm' --until 3", "--until", "3 mm"),
+    ("continuum wall.toml --mesh-size 300", "--mesh-size", "300 mm"),
+    ("cell wall.toml --stress yy=-1", "--stress", "-1 N/mm2"),
 ]
 
 
-@pytest.mark.parametrize(("command", "bare", "stated"), LENGTHS)
+@pytest.mark.parametrize(("command", "where", "write"), LENGTHS)
 def test_a_bare_length_of_the_command_line_is_not_read_in_metres_beside_a_file_in_millimetres(
-    wall: Path, command: str, bare: str, stated: str
+    wall: Path, command: str, where: str, write: str
 ) -> None:
-    wall.write_text('[units]\nlength = "mm"\nforce = "N"\n' + WALL)
-    answer = CliRunner().invoke(app, shlex.split(command.format(bare)))
+    body = CELL if command.startswith("cell") else WALL
+    wall.write_text('[units]\nlength = "mm"\nforce = "N"\n' + body)
+    answer = CliRunner().invoke(app, shlex.split(command))
     assert answer.exit_code == 2
-    assert f"'{bare}' has no unit" in answer.stderr
-    assert f"write '{bare} mm'" in answer.stderr
-    told = CliRunner().invoke(app, shlex.split(command.format(stated)))
-    assert "has no unit" not in told.stderr
-    wall.write_text(WALL)
-    assert "has no unit" not in CliRunner().invoke(app, shlex.split(command.format(bare))).stderr
+    assert f"{where}: '{write.split()[0]}' has no unit" in answer.stderr
+    assert f"write '{write}'" in answer.stderr
+    assert measured("0", "length", where, wall) == 0.0
+    assert measured("2 cm", "length", where, wall) == 0.02
+    assert measured("20", "number", where, wall) == 20.0
+    wall.write_text(body)
+    assert measured("20", "length", where, wall) == 20.0
+    with pytest.raises(InputError, match="standard input"):
+        measured("20", "length", where, Path("-"))

@@ -13,14 +13,12 @@ import scipy.sparse as sp
 from scipy.sparse.csgraph import breadth_first_order
 
 from concio.contact.assembly import Assembly
+from concio.problem.limits_of_work import MOST_SLIDING
 
 Array = np.ndarray
 
 LEAN = 0.1
 """Joints whose normal leans from the horizontal, or from the line across the push, by more take bodies along."""
-
-MOST_SLIDING = 150
-"""Parts at most, in the plane; in space, where a curve takes many programmes, none."""
 
 
 def sliding_parts(assembly: Assembly, along: Array) -> dict[tuple[int, ...], str]:
