@@ -19,6 +19,10 @@ UNASKED_IN_SPACE = 1_500
 """Up to this number of pairs in space collapse states are searched for by default, and the least load that was not
 reached is applied in one step: beyond, the few programmes of some seconds end far from a state."""
 
+MOST_SLIDING = 150
+"""Largest number of parts that slide which an assessment in the plane follows; in space, where a curve takes many
+programmes, it follows none."""
+
 UNASKED_WORK = 40_000
 """Linear programmes times pairs of the search for collapse states where it is not asked for: some five seconds."""
 
@@ -126,7 +130,3 @@ LEAST_LET_GO = 500
 
 MOST_LET_GO = 10_000
 """Largest number of steps that are spent on it."""
-
-MOST_SLIDING = 150
-"""Largest number of parts that slide which an assessment in the plane follows; in space, where a curve takes many
-programmes, it follows none."""

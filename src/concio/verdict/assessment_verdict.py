@@ -270,7 +270,7 @@ class _Words:
             key = "part" if worst.name == "weakest of all" else "part_decides"
             limits.append(self.say(key, bodies=bodies, name=self.name(worst.name)))
         if worst is not None and self.slides_alike(worst):
-            limits.append(self.say("least_alike" if self.least_parts() else "alike", name=self.name(worst.name)))
+            limits.append(self.say("least_alike" if self.least_parts(worst) else "alike", name=self.name(worst.name)))
         limits += [self.say("brittle", tie=t.name, force=t.strength) for t in found.model.ties if t.strength < t.most
                    and t.yield_force is not None]  # fmt: skip
         apart = [
@@ -307,11 +307,17 @@ class _Words:
             for m in (*self.found.mechanisms, *self.found.others)
         )  # fmt: skip
 
-    def least_parts(self) -> bool:
-        """Return whether the least parts that slide were followed: in the plane, where they are not too many."""
-        bodies = self.found.model.bodies
-        few = self.found.model.dim == 2 and sum(b.kind != "fixed" for b in bodies) <= MOST_SLIDING
-        return few or any(m.name.endswith(TOGETHER) for m in (*self.found.mechanisms, *self.found.others))
+    def least_parts(self, worst: LocalMechanism) -> bool:
+        """Return whether the least parts that slide with a mechanism's push were followed.
+
+        They are in the plane, where they are not too many and a mechanism slides by Coulomb's law.
+        """
+        alike = [m for m in (*self.found.mechanisms, *self.found.others) if m.direction == worst.direction]
+        if any(m.name.endswith(TOGETHER) for m in alike):
+            return True
+        few = sum(b.kind != "fixed" for b in self.found.model.bodies) <= MOST_SLIDING
+        sure = any(m.mechanics.slides and m.found.flow != "associated" for m in alike)
+        return self.found.model.dim == 2 and few and sure
 
     def strips(self) -> str:
         """Return how a facade was searched out of its plane."""
