@@ -11,6 +11,7 @@ from concio.errors import InputError
 from concio.plot import style
 from concio.post.force_lines import force_chains
 from concio.post.joint_lines import joint_lines
+from concio.post.outlines import outlines
 from concio.post.pressure import pressure_diagrams
 from concio.post.thrust_line import thrust_lines
 
@@ -40,8 +41,7 @@ def plot_pressure(result: Result, ax: Axes | None = None, *, scale: float | None
     """
     from matplotlib.collections import PolyCollection
 
-    ax, shown, box = style.draw_at_rest(result, ax)
-    pieces = joint_lines(result, shown)
+    pieces = joint_lines(result, outlines(result))
     contacts = result.contacts
     pressure = np.nan_to_num(contacts.pressure[pieces.pair])  # a corner has no area
     largest = float(pressure.max(initial=0.0))
@@ -49,6 +49,7 @@ def plot_pressure(result: Result, ax: Axes | None = None, *, scale: float | None
     typical = float(np.sqrt(np.median(areas or [1.0])))
     scale = (0.8 * typical / largest if largest > 0 else 1.0) if scale is None else scale
     diagrams = pressure_diagrams(result, pieces, scale)
+    ax, _, box = style.draw_at_rest(result, ax, around=np.vstack([pieces.ends.reshape(-1, 2), *diagrams]))
     ax.add_collection(
         PolyCollection(diagrams, facecolors=style.COMPRESSION.colour, alpha=0.42, edgecolors="none", zorder=3)
     )
@@ -150,7 +151,7 @@ def plot_thrust(result: Result, ax: Axes | None = None) -> Axes:
     from matplotlib.lines import Line2D
 
     units = result.model.report
-    ax, _, box = style.draw_at_rest(result, ax)
+    ax, _, box = style.draw_at_rest(result, ax, around=np.vstack([line.points for line in lines]))
     hinges = 0
     for line in lines:
         ax.plot(*line.points.T, color=style.THRUST.colour, lw=style.THRUST.width, zorder=4)

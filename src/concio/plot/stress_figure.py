@@ -46,12 +46,12 @@ def plot_principal(
     Axes
     """
     found = crosses(result, of)
-    ax, _, box = style.draw_at_rest(result, ax, face=_shades(result) if shade else None)
     largest = found.largest
     typical = float(np.median(found.size[found.size >= np.median(found.size)])) if len(found.size) else 1.0
     longest = typical * (1.25 if of == "bodies" else 1.8)
     scale = (longest / largest if largest > 0 else 1.0) if scale is None else scale
     lines, value = found.arms(scale)
+    ax, _, box = style.draw_at_rest(result, ax, face=_shades(result) if shade else None, around=lines)
     size = np.abs(value) / (largest or 1.0)
     many = len(found.s1) > 1500
     for look, keep in ((style.COMPRESSION, value < 0), (style.TENSION, value > 0)):

@@ -76,8 +76,19 @@ def axes_for(box: Array, ax: Axes | None) -> Axes:
     return axes
 
 
-def draw_at_rest(result: Result, ax: Axes | None, *, face: Sequence[Any] | None = None) -> tuple[Axes, Outlines, Array]:
+def draw_at_rest(
+    result: Result, ax: Axes | None, *, face: Sequence[Any] | None = None, around: Array | None = None
+) -> tuple[Axes, Outlines, Array]:
     """Draw the bodies where they were before loading, in axes of their own shape where none are given.
+
+    Parameters
+    ----------
+    result : Result
+    ax : Axes or None
+    face : colours, optional
+        Of the bodies.
+    around : (..., 2) array, optional
+        Points that have to be inside the box as well [m].
 
     Returns
     -------
@@ -90,6 +101,9 @@ def draw_at_rest(result: Result, ax: Axes | None, *, face: Sequence[Any] | None 
 
     shown = outlines(result)
     box = box_of(shown.points)
+    if around is not None and around.size:
+        corners = np.vstack([box, box_of(around, margin=0.01)])
+        box = np.array([corners.min(0), corners.max(0)])
     ax = axes_for(box, ax)
     draw_bodies(ax, result.model, shown, face=face)
     return ax, shown, box

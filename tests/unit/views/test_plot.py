@@ -349,6 +349,19 @@ def test_crosses_tell_compression_from_tension_twice(panel: Result, of: str) -> 
     assert len(_lines(ax, style.TENSION)) == (shown & (value > 0)).sum()
     assert style.COMPRESSION.dash != style.TENSION.dash
     assert Units().text("stress", float(found.s2.min())) in _texts(ax)
+    drawn = np.vstack(_lines(ax, style.COMPRESSION) + _lines(ax, style.TENSION))
+    for points, (low, high) in zip(drawn.T, (ax.get_xlim(), ax.get_ylim()), strict=True):
+        assert low <= points.min() <= points.max() <= high  # no arm is cut off at the frame
+
+
+@pytest.mark.parametrize("scale", [0.01, 1.0])
+def test_no_diagram_of_pressure_is_cut_off_at_the_frame(panel: Result, scale: float) -> None:
+    ax = panel.plot.pressure(scale=scale)
+    drawn = [c for c in ax.collections if isinstance(c, PolyCollection) and c.get_zorder() == 3]
+    points = np.vstack([path.vertices for c in drawn for path in c.get_paths()])
+    assert np.ptp(points, axis=0).max() > scale  # some pressure is above 1 kN/m2
+    for values, (low, high) in zip(points.T, (ax.get_xlim(), ax.get_ylim()), strict=True):
+        assert low <= values.min() <= values.max() <= high
 
 
 def test_looks_differ_in_grey() -> None:
