@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -14,6 +14,11 @@ from concio.cli.output import replaced_directory
 from concio.cli.path_command import control_of
 from concio.cli.progress import progress_bar, verdict_so_far
 from concio.cli.push_command import Film, Series, check_out
+
+if TYPE_CHECKING:
+    from concio.model.motion.signals import Pulse, Record
+
+    Signal = Pulse | Record
 
 
 @guarded
@@ -64,6 +69,7 @@ def shake(
     Example: concio shake pillar.toml --motion record.at2 --scale 0.3 --out shaken --film gif
     """
     import concio
+    from concio.analysis.motion.continued import goes_on
     from concio.analysis.motion.dynamics_result import DynamicsResult, Ending
     from concio.cli.motion_lines import shake_lines, write_motion
     from concio.errors import InputError
@@ -76,20 +82,33 @@ def shake(
     model = loaded(file, units, engine)
     data = read_tables(file)
     table = motion_table(data, str(file), file_units(data, str(file)))
-    options: dict[str, Any] = table.arguments()
-    if motion is None and pulse is None:
-        ground = table.ground(file.parent, model.dim)
-    else:
-        if motion is not None and pulse is not None:
-            msg = "there is a record and a pulse along x"
-            raise InputError(msg, where="--motion, --pulse", hint="keep one of them")
-        ground = {}
+    options: dict[str, Any] = table.arguments(model.dim)
+    if motion is not None and pulse is not None:
+        msg = "there is a record and a pulse along x"
+        raise InputError(msg, where="--motion, --pulse", hint="keep one of them")
+    notes: list[str] = []
     apart = None if record_step is None else _time(record_step, "--record-step")
+    given: dict[str, Signal] = {}
     for axis, record in records_by_axis(motion, transverse, vertical, model.dim, "--transverse"):
         if record is not None:
-            ground[axis] = read_record(record, unit=record_unit, step=apart)
+            given[axis] = read_record(record, unit=record_unit, step=apart)
     if pulse is not None:
-        ground["x"] = _pulse(pulse)
+        given["x"] = _pulse(pulse)
+    whole = "x" in given
+    own = {} if whole else table.ground(file.parent, model.dim)
+    kept = own.keys() - given.keys()
+    if scale is None and table.scale != 1.0 and given and not kept:
+        notes.append(
+            f"the scale of {table.scale:g} in the file belongs to its own ground motion and was not applied: --scale"
+        )
+    left = [word for word, there in (("transverse", transverse), ("vertical", vertical))
+            if whole and there is None and getattr(table, word) is not None]  # fmt: skip
+    if left:
+        notes.append(
+            f"the {' and '.join(left)} record of the file belongs to its own ground motion and was not applied: "
+            + ", ".join(f"--{word}" for word in left)
+        )
+    ground, factor_of_motion = _scaled(given, {axis: own[axis] for axis in kept}, scale, table.scale)
     for name, text in (("duration", duration), ("step", step)):
         if text is not None:
             options[name] = _time(text, f"--{name}")
@@ -102,17 +121,16 @@ def shake(
         if not isinstance(earlier, DynamicsResult):
             msg = "this is a push, no motion in time"
             raise InputError(msg, where=str(start), hint="give the motion.npz that shake wrote")
+        notes += goes_on(earlier.model, model, str(start))
+        if options.pop("velocities", None):
+            notes.append("the velocities of the file are those of a beginning: this motion goes on with those it had")
         options["start"] = earlier.end
-    own = any(option is not None for option in (motion, pulse, transverse, vertical))
-    factor_of_motion = (1.0 if own else table.scale) if scale is None else scale
     with progress_bar(shown=not json) as progress:
         found = concio.dynamics(
             model, ground, scale=factor_of_motion, factors=factors_of(factor), progress=progress,
             **options,
         )  # fmt: skip
-    if own and scale is None and table.scale != 1.0:
-        left = f"the scale of {table.scale:g} in the file belongs to its own ground motion and was not applied: --scale"
-        found = replace(found, notes=(*found.notes, left))
+    found = replace(found, notes=(*found.notes, *notes))
     if not json:
         answer(shake_lines(found))
     written: list[str] = []
@@ -125,6 +143,17 @@ def shake(
     elif out is not None:
         say(f"  written      {out}: {', '.join(written)}")
     return 130 if found.ending is Ending.STOPPED else found.verdict.exit_code
+
+
+def _scaled(
+    given: dict[str, Signal], own: dict[str, Signal], scale: float | None, scale_of_own: float
+) -> tuple[dict[str, Signal], float]:
+    """Return the ground motion and a factor of all of it: the scale of a file applies to the signals of the file."""
+    if scale is not None or not own:
+        return {**given, **own}, 1.0 if scale is None else scale
+    if not given:
+        return own, scale_of_own
+    return {**given, **{axis: signal.scaled(scale_of_own) for axis, signal in own.items()}}, 1.0
 
 
 def _time(text: str, where: str) -> float:

@@ -5,22 +5,34 @@ It says nothing of the structure: ``concio.load`` checks it and leaves it at tha
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeVar
 
-from pydantic import BeforeValidator, Field, StrictBool, StrictStr, ValidationError, WithJsonSchema
+from pydantic import (
+    BeforeValidator,
+    Field,
+    StrictBool,
+    StrictStr,
+    ValidationError,
+    ValidationInfo,
+    WithJsonSchema,
+    field_validator,
+)
 
 from concio.errors import InputError
 from concio.model.file.file_errors import first_fault
 from concio.model.file.tables import Name, Table
-from concio.model.file.values import FileUnits, Length
+from concio.model.file.values import FileUnits, Length, fault, units_of
 from concio.model.motion.records import STANDARD_GRAVITY, read_record
-from concio.model.motion.signals import Pulse, Signal
+from concio.model.motion.signals import Pulse, Record
 from concio.model.stages import ControlPoint
 
 TIMES = {"s": 1.0, "ms": 1e-3, "min": 60.0}
+SPEEDS = {"m/s": 1.0, "cm/s": 0.01, "mm/s": 1e-3}
+SPINS = {"rad/s": 1.0, "deg/s": math.pi / 180}
 ACCELERATIONS = {"m/s2": 1.0, "cm/s2": 0.01, "gal": 0.01, "g": STANDARD_GRAVITY}
 _QUANTITY = re.compile(r"\s*([-+0-9.eE]+)\s*([a-zA-Z/0-9]*)\s*")
 
@@ -57,9 +69,23 @@ def acceleration(value: Any) -> Any:
     return with_unit(value, ACCELERATIONS, "acceleration")
 
 
+def _refuse_bare(value: Any, info: ValidationInfo, form: str) -> None:
+    """Refuse a bare number in a file that is not in m: m and the unit of the file are as likely meant."""
+    found = value if isinstance(value, str) else repr(value)
+    bare = isinstance(value, int | float | str) and re.search("[a-zA-Z]", re.sub("[eE][-+]?[0-9]", "", found)) is None
+    if bare and units_of(info).length != 1.0 and float(value) != 0:
+        msg = f"{value} has no unit, and this file has units of its own"
+        raise fault(msg, f"write its unit, as in {form}")
+
+
+def _acceleration(value: Any, info: ValidationInfo) -> Any:
+    _refuse_bare(value, info, "'0.4 g' or '3.9 m/s2'")
+    return acceleration(value)
+
+
 _PUBLISHED = WithJsonSchema({"anyOf": [{"type": "number"}, {"type": "string"}]})
 Time = Annotated[float, BeforeValidator(seconds), _PUBLISHED]
-Acceleration = Annotated[float, BeforeValidator(acceleration), _PUBLISHED]
+Acceleration = Annotated[float, BeforeValidator(_acceleration), _PUBLISHED]
 
 
 class PulseTable(Table):
@@ -106,6 +132,8 @@ class MotionTable(Table):
         Time from one value of the record to the next, where the file does not say it.
     pulse :
         A pulse along x, in place of a record.
+    velocities :
+        Initial velocities in m/s, then rad/s, or texts with a unit.
     """
 
     record: StrictStr | None = None
@@ -125,10 +153,18 @@ class MotionTable(Table):
     base: Literal["inertia", "moving"] | None = None
     start: Literal["equilibrium", "as described"] | None = None
     adaptive: StrictBool | None = None
-    velocities: dict[str, list[float]] = Field(default_factory=dict)
+    velocities: dict[str, list[StrictStr | float]] = Field(default_factory=dict)
     points: list[MotionPoint] = Field(default_factory=list)
 
-    def ground(self, folder: Path, dim: int) -> dict[str, Signal]:
+    @field_validator("velocities", mode="after")
+    @classmethod
+    def _said(cls, value: dict[str, list[Any]], info: ValidationInfo) -> dict[str, list[Any]]:
+        for parts in value.values():
+            for part in parts[:3]:
+                _refuse_bare(part, info, "['200 mm/s', '0 m/s', '0.1 rad/s']")
+        return value
+
+    def ground(self, folder: Path, dim: int) -> dict[str, Pulse | Record]:
         """Return the ground motion by component, of a model in the plane or in space.
 
         Raises
@@ -139,7 +175,7 @@ class MotionTable(Table):
         if self.record is not None and self.pulse is not None:
             msg = "there is a record and a pulse along x"
             raise InputError(msg, where="[motion]", hint="keep one of them")
-        found: dict[str, Signal] = {}
+        found: dict[str, Pulse | Record] = {}
         for axis, name in records_by_axis(self.record, self.transverse, self.vertical, dim, "[motion]"):
             if name is not None:
                 found[axis] = read_record(folder / name, unit=self.unit, step=self.record_step)
@@ -148,18 +184,33 @@ class MotionTable(Table):
             found["x"] = Pulse(p.shape, p.amplitude, p.length, p.cycles)
         return found
 
-    def arguments(self) -> dict[str, Any]:
-        """Return the arguments of :func:`concio.dynamics` that the file states, without the ground motion."""
+    def arguments(self, dim: int) -> dict[str, Any]:
+        """Return the arguments of :func:`concio.dynamics` that the file states, without the ground motion.
+
+        Raises
+        ------
+        InputError
+            A velocity has a unit that does not fit in a model of that dimension.
+        """
         names = (
             "duration", "step", "restitution", "theta", "mass_damping", "stiffness_damping", "gravity", "base", "start",
             "adaptive",
         )  # fmt: skip
         found: dict[str, Any] = {n: getattr(self, n) for n in names if getattr(self, n) is not None}
         if self.velocities:
-            found["velocities"] = self.velocities
+            found["velocities"] = {body: _velocity(parts, dim, body) for body, parts in self.velocities.items()}
         if self.points:
             found["points"] = tuple(ControlPoint(p.body, p.at, p.direction) for p in self.points)
         return found
+
+
+def _velocity(parts: list[Any], dim: int, body: str) -> list[float]:
+    """Return the velocity of a body [m/s, rad/s]: one of its centroid along each axis, then its spin."""
+    try:
+        return [float(with_unit(part, SPEEDS, "velocity") if k < dim else with_unit(part, SPINS, "rate of rotation"))
+                for k, part in enumerate(parts)]  # fmt: skip
+    except ValueError as error:
+        raise InputError(str(error), where=f"[motion] velocities, '{body}'") from None
 
 
 T = TypeVar("T")
