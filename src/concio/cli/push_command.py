@@ -80,7 +80,8 @@ def push(
     structure carries: self-weights and loads from above, as in "concio assess".
 
     The exit code is 0 where the curve was followed to its end, 3 where the structure does not stand at the start, 4
-    where the curve could not be continued or was stopped before its end.
+    where the curve could not be continued or was stopped before its end, or a growing load (--load) ended below the
+    multiplier of --until.
 
     Example: concio push pillar.toml --out pushed --film gif
     """

@@ -41,6 +41,7 @@ HEADLINES = {
     Outcome.INCOMPLETE: "The curve ends before the strength is lost.",
     Outcome.UNDECIDED: "The points of the curve do not pass their check.",
 }
+FELL_SHORT = "The multiplier asked for was not reached."
 
 
 def push_verdict(found: PushResult) -> Verdict:
@@ -60,7 +61,7 @@ def push_verdict(found: PushResult) -> Verdict:
         outcome=outcome,
         status=found.ending.name.lower() if found.certified else "not_certified",
         question=_question(found),
-        headline=HEADLINES[_outcome(found)],
+        headline=FELL_SHORT if _fell_short(found) and found.certified else HEADLINES[_outcome(found)],
         answer=_answer(found),
         proof=_proof(found),
         meaning=_meaning(found),
@@ -121,6 +122,11 @@ def _outcome(found: PushResult) -> Outcome:
     if not found.certified:
         return Outcome.UNDECIDED
     return Outcome.HOLDS if found.ending.name in ("LOST", "REACHED", "NO_LARGER_LOAD", "LOCKED") else Outcome.INCOMPLETE
+
+
+def _fell_short(found: PushResult) -> bool:
+    """Return whether a growing load ended below the multiplier that was asked for."""
+    return found.by_load and found.until is not None and found.ending.name == "NO_LARGER_LOAD"
 
 
 def _question(found: PushResult) -> Question:
@@ -223,6 +229,8 @@ def _unchecked(found: PushResult) -> tuple[str, ...]:
     if name in ("NO_EQUILIBRIUM", "STOPPED"):
         where = found.model.report.text("motion", float(found.displacement[-1]), 4)
         return (f"the curve beyond {where}",)
+    if _fell_short(found) and found.until is not None:
+        return (f"whether an equilibrium far from there carries the multiplier of {number(found.until, 6)} asked for",)
     return ()
 
 

@@ -8,9 +8,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from commands import run
 from pillars import pillar, point, sideways
+from samples import sample
 
 HELD = pillar(point(1.0, 0.0, (0.0, 0.8)))
 """Pillar of 12.8 kN, pushed by 1 kN at half its height."""
@@ -34,6 +37,22 @@ def test_weights_are_multiplied_beside_a_live_load_that_is_constant(way: int, tm
     assert found["peak"]["multiplier"] == pytest.approx(by_hand, rel=1e-4)
     roles = {a["group"]: a["role"] for a in found["verdict"]["question"]["acting"]}
     assert roles == {"dead": "constant", "live": "constant", "weights": "multiplied"}
+
+
+@settings(max_examples=sample(2, 6, 20), deadline=None)
+@given(lean=st.floats(-0.15, 0.1), share=st.one_of(st.floats(0.3, 0.97), st.floats(1.03, 3.0)))
+def test_a_growing_load_that_ends_below_the_multiplier_asked_for_has_not_shown_it(
+    lean: float, share: float, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    """It was exit code 0, "followed to where it was to end", with half of what was asked for."""
+    path = tmp_path_factory.mktemp("load") / "model.toml"
+    path.write_text(pillar(sideways(1.0), lean=lean))
+    tips = (ARM - lean / 2) / HEIGHT
+    code, out, err = run("push", path, "--load", "--step", repr(tips / 20), "--until", repr(share * tips), "--json")
+    verdict = json.loads(out)["verdict"]
+    assert code == verdict["exit_code"] == (0 if share < 1 else 4), err
+    assert (verdict["headline"] == "The multiplier asked for was not reached.") == (share > 1)
+    assert bool(verdict["unchecked"]) == (share > 1)
 
 
 @pytest.mark.parametrize("way", [1, -1])
