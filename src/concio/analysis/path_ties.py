@@ -115,7 +115,7 @@ def _located(
         part = (1 - a) / (b - a) if k % 3 < 2 and b > a else 0.5
         parameter = low + min(max(part, 0.01), 0.99) * (high - low)
         step = follow_in_steps(path, before, until=parameter, steps=1, solver=solver)
-        if step.outcome is not Outcome.REACHED:
+        if step.outcome is not Outcome.REACHED or len(step.states) != 2:
             return best
         most = float(share(step.states[-1]).max())
         if most <= 1 + BREAK_LOCATED:

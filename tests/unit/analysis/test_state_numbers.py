@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import concio
 from concio.analysis.parameters import parameters_of, stiffnesses_of
-from concio.analysis.state_numbers import LeadingNumber, leading_number
+from concio.analysis.state_numbers import SAME, LeadingNumber, leading_number
 from concio.report.page import report_html
 from samples import sample
 
@@ -78,6 +78,80 @@ def test_forces_that_are_not_determined_have_no_derivative_and_displacements_hav
     assert found.above is not None
     assert np.isnan(found.above.normal_force).any()
     assert np.isfinite(found.above.displacement).all()
+
+
+def test_the_force_of_the_joint_that_carries_most_is_told_where_it_is_determined() -> None:
+    """A block on two piers: three quarters of a load stand on the nearer one; forces of other states are not told."""
+    ground = concio.Body("ground", ((-2, -1), (4, -1), (4, 0), (-2, 0)), kind="fixed")
+    piers = [concio.Body(name, ((x, 0), (x + 0.2, 0), (x + 0.2, 1), (x, 1)), kind="fixed")
+             for name, x in (("near", 1.8), ("far", 0.0))]  # fmt: skip
+    beam = concio.Body("beam", ((0, 1), (2, 1), (2, 1.5), (0, 1.5)), kind="rigid", material="stone")
+    load = concio.Load("point", (0.0, -8.0), bodies=("beam",), at=(1.4, 1.25), group="live")
+    model = concio.Model(
+        (ground, *piers, beam), {"stone": concio.Rigid(0.0)}, {"joint": concio.JointLaw(0.5)}, loads=(load,)
+    )
+    result = concio.solve(model)
+    found = concio.state_sensitivity(result)
+    told = leading_number(result, found)
+    assert told is not None
+    assert (told.kind, set(told.of.split(" | "))) == ("force", {"near", "beam"})
+    assert 8.0 * 1.4 / 2 <= told.value <= 8.0 * 1.4 / 1.8  # where in the joints the forces act is within their width
+    heavy = concio.solve(model, factors={"live": 1e7})
+    for of, numbers in ((result, found), (heavy, concio.state_sensitivity(heavy))):
+        for share, same in ((1 + 0.3 * SAME, True), (1 - 3 * SAME, False), (1 + 3 * SAME, False), (np.nan, False)):
+            other = replace(numbers, normal_force=share * numbers.normal_force)
+            assert (leading_number(of, other) is not None) == same, share
+    nothing = concio.solve(model, factors={"live": 0.0})
+    assert leading_number(nothing, concio.state_sensitivity(nothing)) is None
+
+
+def pillars(heights: dict[str, float], modulus: float, deep: int = 2) -> concio.Model:
+    """Return elastic pillars beside each other, of different heights; in space they are 0.5 deep."""
+    stone, blocks = {"stone": concio.Elastic(modulus, 0.0, unit_weight=20.0)}, []
+    for k, (name, height) in enumerate(heights.items()):
+        low, high = (float(k), 0.0), (k + 0.5, height)
+        if deep == 3:
+            blocks.append(concio.Polyhedron.box(name, (low[0], 0, 0), (high[0], 0.5, height), material="stone"))
+        else:
+            blocks.append(concio.Body(name, (low, (high[0], 0.0), high, (low[0], height)), material="stone"))
+    ground = (
+        concio.Polyhedron.box("ground", (-1, -1, -1), (5, 2, 0), kind="fixed") if deep == 3
+        else concio.Body("ground", ((-1, -1), (5, -1), (5, 0), (-1, 0)), kind="fixed")
+    )  # fmt: skip
+    loads = (concio.Load("weight", (0.0, 0.0, -1.0)[3 - deep :]),)
+    return concio.Model((ground, *blocks), stone, {"joint": concio.JointLaw(0.6)}, loads=loads)
+
+
+@pytest.mark.parametrize("deep", [2, 3])
+@pytest.mark.parametrize("first", ["tall", "low"])
+def test_the_block_that_settles_most_is_named_with_what_it_depends_on(deep: int, first: str) -> None:
+    """Each shortens by gamma h^2 / 2 E under its own weight alone."""
+    heights = {"tall": 2.0, "low": 1.0}
+    model = pillars({first: heights.pop(first), **heights}, 4e5, deep)
+    found = leading(model)
+    assert found is not None
+    assert (found.kind, found.of) == ("settlement", "tall")
+    assert found.value == pytest.approx(20.0 * 2.0**2 / 2 / 4e5, rel=1e-9)
+    rows = {row.name: row.per_percent for row in found.sensitivity.rows}
+    assert rows["unit weight of stone"] == pytest.approx((-1.0, 1.0), abs=1e-8)
+    assert rows["stiffness of stone"] == pytest.approx((1.0, -1.0), abs=1e-8)
+    sizes = [max(map(abs, per)) for per in rows.values()]
+    assert sizes == sorted(sizes, reverse=True)
+    idle = concio.solve(model, factors={"dead": 0.0})
+    assert leading_number(idle, concio.state_sensitivity(idle)) is None
+
+
+def test_of_a_hard_rigid_block_that_settles_most_a_force_is_told() -> None:
+    """A rigid block on an elastic one: its own settlement is not that of a node."""
+    model = pillars({"pillar": 1.0}, 4e5)
+    cap = concio.Body("cap", ((0, 1), (0.5, 1), (0.5, 1.5), (0, 1.5)), kind="rigid", material="lead")
+    soft = concio.JointLaw(0.6, normal_stiffness=1e3, tangential_stiffness=1e3)
+    lead = {**model.materials, "lead": concio.Rigid(100.0)}
+    on_joint = replace(model, bodies=(*model.bodies, cap), materials=lead, laws={"joint": soft})
+    found = leading(on_joint)
+    assert found is not None
+    assert (found.kind, set(found.of.split(" | "))) == ("force", {"pillar", "ground"})
+    assert found.value == pytest.approx(100.0 * 0.25 + 20.0 * 0.5, rel=1e-9)
 
 
 @pytest.mark.long

@@ -162,3 +162,19 @@ def test_what_the_equations_are_linear_in_takes_two_models(monkeypatch: pytest.M
         assert row.above is not None
         assert np.abs(row.above.displacement - wanted).max() <= 1e-8 * np.abs(beside[1]).max() / p.value, p.name
     assert [taken[k] for k in ("friction", "unit weight", "normal stiffness", "length")] == [2, 2, 4, 4]
+
+
+@pytest.mark.parametrize("unit", [1e-5, 1e6])
+def test_a_number_in_another_unit_has_the_same_derivatives_to_each_side(unit: float) -> None:
+    """The models beside a state at a change are found as near to it whatever the number is measured in."""
+    result = concio.solve(pushed(0.0))
+    here = LinearisedState.of(result)
+    plain = _row(Parameter("own", "push", 1.0, "", lambda v: pushed(v - 1.0)), result, here)
+    other = _row(Parameter("own", "push", unit, "", lambda v: pushed(v / unit - 1.0)), result, here)
+    for name in ("normal_force", "friction_force", "displacement"):
+        for a, b in ((plain.below, other.below), (plain.above, other.above)):
+            assert a is not None
+            assert b is not None
+            size = np.abs(getattr(plain.above, name)).max()
+            assert np.abs(getattr(b, name) * unit - getattr(a, name)).max() < 1e-9 * size, name
+    assert np.abs(plain.below.normal_force - plain.above.normal_force).max() > 0.1

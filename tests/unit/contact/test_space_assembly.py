@@ -65,6 +65,25 @@ def test_corners_share_the_area_and_keep_its_centroid() -> None:
     assert share[:4].tolist() == pytest.approx([0.5] * 4)
 
 
+@pytest.mark.parametrize("size", [2.0**-12, 2.0**12])
+def test_points_and_shares_of_a_patch_are_the_same_at_any_size(size: float) -> None:
+    """Lengths go with the size, areas with its square; a power of two changes no digit."""
+
+    def sized(patch: Patch) -> Patch:
+        holes = tuple(size * hole for hole in patch.holes)
+        return replace(patch, polygon=size * patch.polygon, holes=holes, area=size**2 * patch.area)
+
+    large = [sized(patch) for patch in PATCHES]
+    for a, b, power in zip(corner_points(PATCHES), corner_points(large), (1, 2, 0), strict=True):
+        assert np.abs(size**power * a - b).max() <= 1e-14 * np.abs(b).max()
+    for patch, other in zip(PATCHES, large, strict=True):
+        for graded in (False, True):
+            x, w = spread_points(patch, 8, graded=graded)
+            y, v = spread_points(other, 8, graded=graded)
+            assert np.abs(size * x - y).max() <= 1e-13 * np.abs(y).max()
+            assert np.abs(size**2 * w - v).max() <= 1e-12 * v.max()
+
+
 @pytest.mark.parametrize("n", [2, 3, 4, 6])
 def test_points_over_a_patch_integrate_linear_pressures(n: int) -> None:
     for patch in PATCHES:

@@ -13,9 +13,9 @@ import concio
 from concio.analysis.limit import limit
 from concio.problem.solution import Status
 from concio.solvers.path import restart
-from concio.solvers.path.path_state import LinearPath
+from concio.solvers.path.path_state import LinearPath, PathState, state_of
 from concio.solvers.path.record import Outcome
-from concio.solvers.path.restart import TENTH, is_jump, look_beyond, moves_freely, shrinks, step_between
+from concio.solvers.path.restart import TENTH, is_jump, load_unit, look_beyond, moves_freely, shrinks, step_between
 from concio.verdict.limit_words import limit_lines
 from path_helpers import at_rest, energy_error, least_dissipation, weight_then, worst_certificate
 from rigid_walls import FERRIS_TIN_LOI, MU, block_on_incline, wall
@@ -148,3 +148,75 @@ def test_what_has_crushed_before_is_free_to_sink_as_far_as_it_has_come_back() ->
         point = replace(at_rest(path), displacement=sunk * down, offset=np.full(m, crushed))
         assert moves_freely(path, point, down) is free
         assert moves_freely(path, point, -down)
+
+
+def standing(law: concio.JointLaw, weight: float, push: float = 0.0) -> tuple[LinearPath, PathState]:
+    """A rigid block 0.4 by 1 under so much of its weight, pushed at its middle by a share of all of it."""
+    column = concio.column(width=0.4, height=1.0, blocks=1, block="rigid", unit_weight=20.0)
+    model = replace(column, laws=dict.fromkeys(column.laws, law),
+                    loads=(*column.loads, concio.Load("body", (20.0, 0.0), group="live")))  # fmt: skip
+    result = concio.solve(model, factors={"dead": weight, "live": push})
+    problem, found = result.assembly.problem(result.factors), result.solution
+    path = LinearPath(problem, np.zeros(problem.unknowns))
+    return path, state_of(path, 0.0, found.displacement, found.normal_force, found.friction_force, before=at_rest(path))
+
+
+@pytest.mark.parametrize(
+    ("law", "weight", "free"),
+    [
+        (concio.JointLaw(0.6), 1.0, False),
+        (concio.JointLaw(0.6), 0.0, True),
+        (concio.JointLaw(0.0), 1.0, True),
+        (concio.JointLaw(0.0, cohesion=5.0), 1.0, False),
+        (concio.JointLaw(0.6, cohesion=5.0), 0.0, True),  # what nothing presses lifts off and slides without shear
+        (concio.JointLaw(0.6, cohesion=5.0, tensile_strength=2.0), 0.0, False),
+        (concio.JointLaw(0.6, dilatancy=0.3), 0.0, False),  # to slide it has to lift
+    ],
+)
+def test_a_block_slides_freely_where_no_joint_holds_it(law: concio.JointLaw, weight: float, free: bool) -> None:
+    path, point = standing(law, weight)
+    for way in (1.0, -1.0):
+        assert moves_freely(path, point, np.array([way, 0.0, 0.0])) is free
+
+
+@pytest.mark.parametrize(("push", "free"), [(0.0, False), (0.3, False), (0.4, True)])
+def test_a_block_rocks_freely_where_it_stands_on_one_corner_and_no_other_way(push: float, free: bool) -> None:
+    """Rocking leaves the corner where it is: the other one must be without force, and every one that presses counts."""
+    path, point = standing(concio.JointLaw(0.9), 1.0, push)
+    x, y = path.problem.C_n.toarray(), path.problem.C_t.toarray()
+    for k in range(path.problem.pairs):
+        turn = np.linalg.solve(np.array([x[k], y[k], [0.0, 0.0, 1.0]]), [0.0, 0.0, 1.0])  # about this point
+        lifts = np.sign((x @ turn)[np.abs(x @ turn).argmax()]) * turn
+        assert moves_freely(path, point, lifts) == (free and point.normal_force[k] > 1.0), k
+        assert free or not moves_freely(path, point, -lifts)
+
+
+def test_the_unit_of_load_brings_as_much_as_there_is() -> None:
+    path, point = standing(concio.JointLaw(0.6), 1.0)
+    rate = np.array([2.0, -3.0, 1.0])
+    for share, at, wanted in ((3.0, 2.0, 5.0), (3.0, -5.0, 2.0), (3.0, -3.0, 1.0), (0.0, 4.0, 4.0), (0.0, 0.0, 1.0)):
+        same = LinearPath(replace(path.problem, f=share * rate), rate)
+        assert load_unit(same, replace(point, parameter=at)) == pytest.approx(wanted, rel=1e-14)
+    assert load_unit(LinearPath(path.problem, 0 * rate), point) == 1.0
+    across = LinearPath(replace(path.problem, f=np.array([4.0, 0.0, 0.0])), np.array([0.0, -2.0, 0.0]))
+    for at, wanted in ((1.0, 3.0), (-1.0, 3.0), (5.0, 7.0)):
+        assert load_unit(across, replace(point, parameter=at)) == pytest.approx(wanted, rel=1e-14)
+
+
+@pytest.mark.parametrize("modulus", [1e2, 1e7])
+def test_a_motion_that_strains_a_body_needs_forces_at_any_stiffness(modulus: float) -> None:
+    """An elastic block on a smooth bed glides as one, at any rate; it stretches, or bends, under forces alone."""
+    stone = concio.Elastic(modulus, 0.0)
+    result = concio.solve(concio.column(width=0.4, height=1.0, blocks=1, block=stone, friction=0.0, horizontal=0.0))
+    problem, found = result.assembly.problem(result.factors), result.solution
+    path = LinearPath(problem, np.zeros(problem.unknowns))
+    point = state_of(path, 0.0, found.displacement, found.normal_force, found.friction_force, before=at_rest(path))
+    glide = np.tile([1.0, 0.0], problem.unknowns // 2)
+    bend = np.zeros(problem.unknowns)
+    bend[::2] = np.linspace(1.0, 2.0, problem.unknowns // 2)
+    for rate in (1e-12, 1.0, 1e6):
+        for way in (rate, -rate):
+            assert moves_freely(path, point, way * glide)
+            assert not moves_freely(path, point, way * bend)
+    assert not moves_freely(path, point, np.nan * glide)
+    assert not moves_freely(path, point, np.full(problem.unknowns, np.inf))
