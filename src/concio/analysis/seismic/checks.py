@@ -292,13 +292,18 @@ def _check(
     return Check(level, kind, place, capacity, demand(hazard), a_g, a_g / hazard.a_g, clause, site_a_g=hazard.a_g)
 
 
+BEYOND = 1e3
+"""Times the largest acceleration of a site up to which the one that a mechanism bears is sought."""
+
+
 def capacity_acceleration(site: Site, hazard: Hazard, capacity: float, demand: Callable[[Hazard], float]) -> float:
     """Return the least a_g [g] at which the demand reaches the capacity; ``inf`` where none does.
 
-    Along a table of return periods all its quantities change; from hazards by limit state only a_g does.
+    Along a table of return periods all its quantities change; from hazards by limit state, and beyond the table, only
+    a_g does.
     """
     scaled = hazards(site, hazard)
-    shares = np.linspace(0.0, 1.0, GRID + 1)[1:]
+    shares = np.concatenate([np.linspace(0.0, 1.0, GRID + 1)[1:], np.geomspace(1.0, BEYOND, GRID + 1)[1:]])
     low = 0.0
     for share in shares:
         if demand(scaled(float(share))) > capacity:
@@ -311,10 +316,24 @@ def capacity_acceleration(site: Site, hazard: Hazard, capacity: float, demand: C
     return math.inf
 
 
+class _Scaled(Hazard):
+    """A hazard with another acceleration, which may be larger than that of any site."""
+
+    def __post_init__(self) -> None:
+        """Check nothing: all else is that of a hazard."""
+
+
+def _scaled(hazard: Hazard, a_g: float) -> Hazard:
+    return _Scaled(math.nan, a_g, hazard.F0, hazard.T_star, hazard.filled)
+
+
 def hazards(site: Site, hazard: Hazard) -> Callable[[float], Hazard]:
-    """Return the hazards of a site by a share from 0 to 1, the acceleration of 1 being the largest that there is."""
+    """Return the hazards of a site by a share, 1 being the largest acceleration of a site, or the end of its table.
+
+    Beyond it a_g alone grows with the share: no site shakes so hard, but zeta_E is a ratio, and has no end there.
+    """
     if isinstance(site.hazard, Mapping):
-        return lambda share: replace(hazard, a_g=max(share, 1e-9) * LARGEST, T_R=math.nan)
+        return lambda share: _scaled(hazard, max(share, 1e-9) * LARGEST)
     rows: tuple[Hazard, ...] = site.hazard
     first, last = math.log(rows[0].T_R), math.log(rows[-1].T_R)
     low = rows[0].a_g
@@ -322,7 +341,9 @@ def hazards(site: Site, hazard: Hazard) -> Callable[[float], Hazard]:
     def along(share: float) -> Hazard:
         # below the table a_g alone falls; the first tenth of the way is for that
         if share < 0.1:
-            return replace(rows[0], a_g=max(share, 1e-9) / 0.1 * low)
+            return _scaled(rows[0], max(share, 1e-9) / 0.1 * low)
+        if share > 1.0:
+            return _scaled(rows[-1], share * rows[-1].a_g)
         return site.interpolated(math.exp(first + (last - first) * (share - 0.1) / 0.9))
 
     return along
