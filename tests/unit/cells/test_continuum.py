@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ import shapely
 
 import concio
 from concio.analysis.cells.half_spaces import HalfSpaces
+from concio.analysis.continuum.answers import CHECKED, StrengthComparison
 from concio.analysis.continuum.continuum import continuum_of
 from concio.analysis.continuum.elastic import solve_elastic
 from concio.analysis.continuum.kinematic_bound import kinematic_bound
@@ -261,3 +263,29 @@ def test_a_mesh_has_lines_through_corners_and_through_points_that_are_not_near_a
     columns, rows = mesh_lines(shape, points, near)
     assert columns == pytest.approx(size * np.array([0.0, 0.3, 1.0]))
     assert rows == pytest.approx(size * np.array([0.0, 0.5, 0.7, 2.0]))
+
+
+@pytest.mark.parametrize(
+    ("exact", "static", "kinematic", "proven"),
+    [
+        (True, (0.3, 0.0), (0.4, 0.0), (True, True)),
+        (False, (0.3, 0.0), (0.4, 0.0), (False, True)),  # half-spaces around the domain bound from above alone
+        (None, (0.3, 0.0), (0.4, 0.0), (False, True)),
+        (True, (0.3, 2.0), (0.4, 0.0), (False, True)),
+        (True, (0.3, 0.0), (0.4, 2.0), (True, False)),
+        (True, (0.3, 1.0), (0.4, 1.0), (True, True)),
+        (True, (np.inf, 0.0), (np.inf, np.nan), (True, True)),  # no mechanism, and stresses for any load
+        (True, (np.inf, 2.0), (np.inf, np.nan), (False, False)),
+        (False, (np.inf, 0.0), (np.inf, np.nan), (False, False)),
+        (True, (np.nan, np.nan), (0.4, 0.0), (False, True)),
+        (False, (np.nan, np.nan), (-np.inf, 0.0), (True, True)),  # falls under the dead load: nothing is left to prove
+        (True, (0.3, 0.0), (-np.inf, 2.0), (False, False)),
+    ],
+)
+def test_which_bounds_stand(exact, static, kinematic, proven):
+    """Residuals in units of the largest that is small."""
+    domain = SimpleNamespace(domain=None if exact is None else SimpleNamespace(exact=exact))
+    parts = [SimpleNamespace(multiplier=at, residual=share * CHECKED) for at, share in (static, kinematic)]
+    found = StrengthComparison(("live",), domain, None, *parts)
+    assert found.proven == proven
+    assert found.bracket == pytest.approx((static[0], kinematic[0]), nan_ok=True)

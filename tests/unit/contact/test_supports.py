@@ -10,7 +10,7 @@ import pytest
 import concio
 from concio.contact.assembly import assemble
 from concio.errors import InputError
-from concio.model.materials import Elastic
+from concio.model.materials import Elastic, JointLaw
 from concio.model.model import Load, Support
 from models import box, model_of, on_ground, weight
 from pillars import pillar, sideways, turned
@@ -131,6 +131,26 @@ def test_a_moved_obstacle_carries_what_stands_on_it(kind):
     ground = moved.node_displacement("ground")
     corner = np.array([5.0, 0.0]) - [0.0, -0.5]
     np.testing.assert_allclose(ground[2], [0.01 - 0.001 * corner[1], -0.02 + 0.001 * corner[0]])
+
+
+@stone
+@pytest.mark.parametrize("space", [False, True], ids=["plane", "space"])
+@pytest.mark.parametrize(("along", "down"), [(3e-4, 1e-3), (-3e-4, 1e-3), (2e-4, 5e-4), (1.0, 1e-3), (0.0, -1e-3)])
+def test_a_held_body_that_moves_along_its_joint_is_resisted_by_its_springs(along, down, space, stone):
+    """A block of 1 x 1 that is pressed onto the ground and along it: springs of the joint, friction at most."""
+    law = JointLaw(0.5, normal_stiffness=1e5, tangential_stiffness=1e5)
+    block = box("b", 0, 1, 0, 1, **(STONE if stone else {"mesh_size": 0.5}))
+    support = Support("s", "b", displacement=(along, -down))
+    model = on_ground(block, law=law, loads=(weight(),), supports=(support,))
+    whole = {} if not space else {"supports": (replace(support, displacement=(along, 0.0, -down)),)}
+    result = concio.solve(replace(concio.extrude(replace(model, supports=())) if space else model, **whole))
+    pressed = 1e5 * max(down, 0.0)
+    shear = np.clip(1e5 * along, -0.5 * pressed, 0.5 * pressed)
+    across = (0.0,) if space else ()
+    assert result.reactions["ground"] == pytest.approx((-shear, *across, pressed), abs=1e-6)
+    half = concio.solve(result.model, factors={"settlement": 0.5})
+    if abs(along) < 0.5 * down:
+        assert half.reactions["ground"] == pytest.approx((-shear / 2, *across, pressed / 2), abs=1e-6)
 
 
 def test_a_large_held_body_needs_no_dense_matrices():

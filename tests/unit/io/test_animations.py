@@ -108,3 +108,20 @@ def test_a_motion_in_the_plane_has_no_solids(tmp_path: Path) -> None:
     found = concio.dynamics(concio.column(width=0.5, height=1.0, blocks=1, block="rigid"), duration=0.01)
     with pytest.raises(concio.InputError, match="space"):
         concio.write_solids(tmp_path / "flat.glb", found)
+
+
+def test_materials_are_as_the_format_has_them(tmp_path: Path) -> None:
+    """Factors lie between nothing and one; the ground has another colour than what stands on it."""
+    concio.write_solids(tmp_path / "a.glb", blocks(((-0.2, -0.3, 0.0), (0.2, 0.3, 0.4))))
+    scene = Scene(tmp_path / "a.glb").json
+    tones = []
+    for material in scene["materials"]:
+        look = material["pbrMetallicRoughness"]
+        assert (look["metallicFactor"], look["roughnessFactor"]) == (0.0, 1.0)  # of stone: dull, no metal
+        assert len(look["baseColorFactor"]) == 4
+        assert all(0.0 <= part <= 1.0 for part in look["baseColorFactor"])
+        tones.append(look["baseColorFactor"])
+    used = {mesh["name"]: mesh["primitives"][0]["material"] for mesh in scene["meshes"]}
+    assert len(used) == 2
+    assert sorted(used.values()) == [0, 1]
+    assert tones[0] != tones[1]

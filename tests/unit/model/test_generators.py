@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 import concio
 from concio.errors import GeometryError, InputError
 from concio.model.generate.arches import arch
-from concio.model.generate.bonds import Course, bond_courses, head_joints, without_short_pieces
+from concio.model.generate.bonds import SHORTEST, Course, bond_courses, head_joints, without_short_pieces
 from concio.model.generate.columns import buttress, column
 from concio.model.generate.generators import GENERATORS, arguments_of, generate
 from concio.model.generate.rubble import rubble
@@ -62,6 +64,30 @@ def test_english_bond_shows_headers_and_closers():
 def test_short_pieces_are_joined_or_shared():
     np.testing.assert_allclose(without_short_pieces([0, 1, 2, 2.1]), [0, 1, 1.55, 2.1])
     np.testing.assert_allclose(without_short_pieces([0, 0.1, 0.6, 1.6]), [0, 0.6, 1.6])
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(st.floats(0.01, 1.0), min_size=1, max_size=9), st.sampled_from([1.0, 1.25]))
+def test_short_pieces_are_joined_to_neighbours(pieces, longest):
+    """No piece is short, none grows beyond what two whole ones give, ends stay, and nothing is left to do."""
+    lines = np.cumsum([0.0, *pieces])
+    found = without_short_pieces(lines, longest)
+    assert (found[0], found[-1]) == (lines[0], lines[-1])
+    assert (np.diff(found) > 0).all()
+    assert len(found) == 2 or np.diff(found).min() >= SHORTEST - 1e-8
+    assert np.diff(found).max() <= longest + SHORTEST + 1e-8 or np.diff(found).max() <= max(pieces)
+    assert without_short_pieces(found, longest) == pytest.approx(found, abs=1e-9)
+    kept = np.abs(lines[:, None] - found).min(axis=1) < 1e-9
+    assert kept.sum() + np.sum(np.diff(lines) < SHORTEST) >= len(lines) - 1  # only lines of short pieces go or move
+
+
+def test_a_line_between_pieces_that_are_too_long_together_moves_to_their_middle():
+    """From both ends alike: mirrored lines give mirrored ones."""
+    for lines, wanted in (([0, 1, 1.1], [0, 0.55, 1.1]), ([0, 1, 2, 2.2, 3.2], [0, 1, 1.6, 2.2, 3.2])):
+        there = lines[-1] - np.array(lines)[::-1]
+        assert without_short_pieces(lines) == pytest.approx(wanted)
+        if len(lines) == 3:
+            assert without_short_pieces(there) == pytest.approx(lines[-1] - np.array(wanted)[::-1])
 
 
 def test_names_and_layers_tell_course_and_sort():

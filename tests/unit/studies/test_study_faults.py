@@ -9,7 +9,8 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future
 from pathlib import Path
 
 import numpy as np
@@ -320,3 +321,43 @@ high = 0.12
     assert code == 2
     assert "did you mean 'ring'" in error
     assert not (tmp_path / "t").exists()
+
+
+class Client:
+    """A stand-in for a Dask client of some threads, whose executor makes each run at once."""
+
+    def __init__(self, threads: dict[str, int]) -> None:
+        self.threads, self.out, self.most = threads, 0, 0
+
+    def nthreads(self) -> dict[str, int]:
+        return self.threads
+
+    def get_executor(self, *, pure: bool) -> Client:
+        assert not pure  # a run that is tried again is no other one
+        return self
+
+    def submit(self, task: Callable[..., Row], *given: object) -> Future[Row]:
+        client = self
+        client.out += 1
+        client.most = max(client.most, client.out)
+
+        class Made(Future):  # type: ignore[type-arg]
+            def result(self, timeout: float | None = None) -> Row:
+                client.out -= 1
+                return super().result(timeout)  # type: ignore[no-any-return]
+
+        made = Made()
+        made.set_result(task(*given))
+        return made
+
+
+@pytest.mark.parametrize(
+    ("threads", "workers", "size"), [({"a": 4, "b": 2, "c": 1}, None, 3), ({}, None, 1), ({"a": 1}, 2, 2)]
+)
+def test_a_client_gets_as_many_runs_ahead_as_keep_its_workers_busy(
+    threads: dict[str, int], workers: int | None, size: int
+) -> None:
+    client = Client(threads)
+    found = concio.study(formula, VARIABLES, "multiplier", "monte-carlo", size=RUNS, seed=1, executor=client, workers=workers)
+    assert same_rows(found, study(formula, "serial"))
+    assert client.most == executors.AHEAD * size

@@ -117,8 +117,8 @@ class HalfSpaces:
         hull, count = self._polar
         points = self.interior / self.size - hull.equations[:, :3] / hull.equations[:, 3:]
         own: Array = np.asarray(hull.simplices).max(axis=1) < count
-        near = np.round(points / (1e-9 * np.maximum(1.0, np.abs(points).max(1, keepdims=True))))
-        _, first = np.unique(near, axis=0, return_index=True)
+        plane = np.column_stack([hull.equations[:, :3], np.log(-hull.equations[:, 3])])  # one for each vertex
+        _, first = np.unique(np.round(plane / SAME), axis=0, return_index=True)
         return points[first] * self.size, own[first]
 
     def section(

@@ -170,7 +170,7 @@ class NewtonStep:
             e2 = b - s.along(du) - times(self.H, dt)
             if s.any_smooth:
                 e2[~s.rough, 1:] = 0.0
-            worst = max(float(np.abs(e1).max()), float(np.abs(e2).max(initial=0.0)) / self.residuals.length)
+            worst = max(float(np.abs(e1).max(initial=0.0)), float(np.abs(e2).max(initial=0.0)) / self.residuals.length)
             if not worst < 0.5 * least:
                 break
             least, kept = worst, (du, dt)
