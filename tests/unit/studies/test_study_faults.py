@@ -358,6 +358,7 @@ def test_a_client_gets_as_many_runs_ahead_as_keep_its_workers_busy(
     threads: dict[str, int], workers: int | None, size: int
 ) -> None:
     client = Client(threads)
-    found = concio.study(formula, VARIABLES, "multiplier", "monte-carlo", size=RUNS, seed=1, executor=client, workers=workers)
+    given = {"size": RUNS, "seed": 1, "executor": client, "workers": workers}
+    found = concio.study(formula, VARIABLES, "multiplier", "monte-carlo", **given)
     assert same_rows(found, study(formula, "serial"))
     assert client.most == executors.AHEAD * size
