@@ -283,8 +283,7 @@ def _smoothed(area: _Area, points: Array) -> Array:
         # an independent set: points that come before all their waiting neighbours
         rank = np.where(waiting, order, n)
         least = np.full(n, n)
-        np.minimum.at(least, edges[:, 0], rank[edges[:, 1]])
-        np.minimum.at(least, edges[:, 1], rank[edges[:, 0]])
+        np.minimum.at(least, edges[:, 0], rank[edges[:, 1]])  # an edge inside stands there in both directions
         chosen = waiting & (rank < least)
         waiting &= ~chosen
         moved = np.where(chosen[:, None], (graph @ points) / np.maximum(graph.sum(1), 1)[:, None], points)

@@ -8,7 +8,7 @@ import pytest
 from concio.errors import GeometryError, InputError
 from concio.fem.mapped_mesh import _monotone, _paired
 from concio.fem.polygon_mesh import mesh_polygon, mesh_quality
-from concio.fem.triangulate import _worst_around
+from concio.fem.triangulate import _Area, _smoothed, _worst_around
 from concio.kinematics.mass import signed_area
 from concio.model.interfaces.polygon_check import check_polygon, polygon_faults
 from meshes import assert_good_mesh
@@ -181,3 +181,30 @@ def test_partners_that_would_cross_a_mark_are_spread_between_their_neighbours():
     assert np.array(found) == pytest.approx(
         np.array([(0.0, 0.0), (0.5, 0.1), (0.6, 0.2), (0.7, 0.3), (0.8, 0.4), (1.0, 1.0)])
     )
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_points_that_were_disturbed_are_smoothed(seed):
+    """Inside of a hexagon on a triangular grid: shapes gain, the worst one too, and the boundary stays."""
+    rows = np.stack(np.meshgrid(np.arange(-4, 5), np.arange(-4, 5)), -1).reshape(-1, 2)
+    grid = 0.25 * rows @ np.array([(1.0, 0.0), (0.5, 0.75**0.5)])
+    angle = np.pi / 6 + np.arange(6) * np.pi / 3
+    reach = (grid @ np.stack([np.cos(angle), np.sin(angle)])).max(1)
+    edge, inner = grid[np.isclose(reach, 0.75**0.5)], grid[reach < 0.8]
+    ring = edge[np.argsort(np.arctan2(edge[:, 1], edge[:, 0]))]
+    area = _Area([ring])
+
+    def shapes(points):
+        return _worst_around(points, area.triangulated(points))
+
+    regular = np.concatenate([ring, inner])
+    assert (len(ring), len(inner)) == (24, 37)
+    assert shapes(regular) == pytest.approx(1.0)
+    assert _smoothed(area, regular) == pytest.approx(regular)
+    moved = regular.copy()
+    moved[24:] += np.random.default_rng(seed).uniform(-0.08, 0.08, inner.shape)
+    once = _smoothed(area, moved)
+    thrice = _smoothed(area, _smoothed(area, once))
+    assert (once[:24] == ring).all()
+    assert shapes(moved).min() < shapes(once).min() <= shapes(thrice).min()
+    assert 1 - shapes(once).mean() < 0.6 * (1 - shapes(moved).mean())

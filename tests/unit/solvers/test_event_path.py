@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from concio.errors import InputError
 from concio.problem.contact_problem import ContactProblem, Laws
 from concio.problem.pair_state import PairStates
 from concio.solvers.path import direction
-from concio.solvers.path.event_path import follow
+from concio.solvers.path.event_path import _Follower, follow
 from concio.solvers.path.path_state import CRUSHED, OPEN, LinearPath, PathState
 from concio.solvers.path.path_state import at_rest as unloaded
 from concio.solvers.path.record import Outcome
@@ -207,3 +208,25 @@ def test_cancelling():
     found = follow(path, standing(path), until=7.0, progress=lambda _: True)
     assert found.outcome is Outcome.CANCELLED
     assert len(found.states) == 2
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+@pytest.mark.parametrize("outcome", [Outcome.LOST, Outcome.LIMIT])
+def test_the_last_direction_of_a_lost_path_goes_with_its_load(sense: float, outcome: Outcome) -> None:
+    """The runaway rate of a matrix that is nearly singular has either sign; a mechanism has its own."""
+    load = np.array([3.0, -1.0])
+    equations, path = SimpleNamespace(n=2, factorisations=7), SimpleNamespace(load_rate=load)
+    follower = SimpleNamespace(equations=equations, by_load=True, sense=sense, path=path)
+    for way in (1.0, -1.0):
+        rate = way * np.array([0.5, 2.0, 9.0])  # the last is no displacement
+        moved = _Follower.finish(follower, [], [], outcome, rate).direction  # type: ignore[arg-type]
+        assert np.abs(moved).max() == 1.0
+        assert np.abs(moved) == pytest.approx([0.25, 1.0])
+        along = load @ moved * sense
+        assert along > 0 if outcome is Outcome.LOST else along * sense * (load @ rate[:2]) > 0
+        by_motion = SimpleNamespace(**{**vars(follower), "by_load": False})
+        kept = _Follower.finish(by_motion, [], [], outcome, rate)  # type: ignore[arg-type]
+        assert kept.direction == pytest.approx(rate[:2] / 2.0)
+    nothing = _Follower.finish(follower, [], [], outcome, None)  # type: ignore[arg-type]
+    assert (nothing.direction == 0.0).all()
+    assert nothing.factorisations == 7

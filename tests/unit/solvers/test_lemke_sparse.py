@@ -19,9 +19,10 @@ from concio.problem.solution import Status, pair_states
 from concio.solvers.algebra.scaled import scale
 from concio.solvers.algebra.updated_factor import UpdatedFactor
 from concio.solvers.methods import find
-from concio.solvers.pivoting.covering import cover_point
+from concio.solvers.pivoting.covering import cover_point, named_states
 from concio.solvers.pivoting.pair_rows import PairSystem
 from concio.solvers.pivoting.sparse_lemke import solve
+from concio.solvers.pivoting.state_path import StatePath
 from contact_problems import rigid, wall
 from lcp_problems import small_wall
 from samples import first, sample
@@ -112,6 +113,66 @@ def test_closed_pairs_begin_inside_of_their_strengths(pressed: float) -> None:
     assert (forces[:, 0] > 0).all()
     assert (forces[:, 0] < system.cone.cap).all()
     assert (np.abs(forces[:, 1]) < system.cone.linear_strength(forces[:, 0]) + 1e-9).all()
+
+
+LAWS = [set(), {"tension", "cohesion"}, {"dilatancy", "gap"}, {"springs", "cap", "origin"}]
+
+
+@pytest.mark.parametrize("laws", LAWS, ids=lambda laws: "+".join(sorted(laws)) or "plain")
+@pytest.mark.parametrize("proximal", [0.02, 1.0])
+def test_a_covered_system_has_the_point_for_its_answer(laws: set[str], proximal: float) -> None:
+    """In its states, whatever they are; all that would end them is strictly away, and springs are at rest there."""
+    problem = small_wall(3, *laws, alpha=0.2)
+    for seed in range(3):
+        rng = np.random.default_rng(seed)
+        system = PairSystem(scale(problem), proximal)
+        m, cap = system.m, system.cone.cap
+        u, p, r = rng.normal(size=system.n), rng.uniform(0.0, 2.0, m), rng.normal(size=m)
+        kinds = [Normal.CLOSED, Normal.OPEN] + ([Normal.CRUSHED] if np.isfinite(cap).all() else [])
+        sign = np.where(system.frictionless, 1, rng.integers(-1, 2, m))
+        normal, sign = cover_point(system, rng.choice(kinds, m), sign, u, p, r)
+        path = StatePath(system, normal, sign)
+        assert path.v[-1] == 1.0
+        np.testing.assert_allclose(path.v[: system.n], u, atol=1e-8)
+        np.testing.assert_allclose(system.anchored, proximal * u)
+        slack, closed, stick = system.slacks(path.v, sign), normal == Normal.CLOSED, sign == 0
+        slides = ~stick & ~system.frictionless
+        assert (slack["p"][closed] > 0).all()
+        assert (slack["room"][closed] > 0).all()
+        assert (slack["y_n"][normal == Normal.OPEN] > 0).all()
+        assert (slack["y_n"][normal == Normal.CRUSHED] < 0).all()
+        assert (np.minimum(slack["plus"], slack["minus"])[stick & closed] > 0).all()
+        assert ((sign * slack["y_t"])[slides] > 0).all()
+
+
+def test_named_states_are_those_that_the_point_shows() -> None:
+    """Pairs at their bounds slide to where force or slip point, others stick; without a point nothing open slides."""
+    problem = wall(2, 2)
+    m = problem.pairs
+    problem = replace(problem, laws=replace(problem.laws, friction=np.full(m, 0.5), cap=np.full(m, 4.0)))
+    cases = [  # normal, sign, N, T, slip -> normal, sign
+        (Normal.CLOSED, 0, 2.0, 0.5, 0.0, Normal.CLOSED, 0),
+        (Normal.CLOSED, 0, 2.0, 1.0, 0.0, Normal.CLOSED, -1),
+        (Normal.CLOSED, 0, 2.0, -1.0, 0.0, Normal.CLOSED, 1),
+        (Normal.CLOSED, 1, 2.0, -1.0, 1.0, Normal.CLOSED, 1),
+        (Normal.CLOSED, -1, 2.0, 1.0, -1.0, Normal.CLOSED, -1),
+        (Normal.OPEN, 0, 0.0, 0.0, 1.0, Normal.OPEN, 1),
+        (Normal.OPEN, 0, 0.0, 0.0, -1.0, Normal.OPEN, -1),
+        (Normal.CLOSED, 0, 4.0, 0.0, 0.0, Normal.CRUSHED, 0),
+    ]
+    assert m >= len(cases)
+    rows = [cases[k % len(cases)] for k in range(m)]
+    normal, sign, t_n, t_t, slip, wanted, side = (np.array([row[k] for row in rows]) for k in range(7))
+    u = np.linalg.lstsq(problem.C_t.toarray(), slip, rcond=None)[0]
+    problem = replace(problem, slip_origin=(problem.C_t @ u - slip)[:, None])
+    system = PairSystem(scale(problem))
+    found = named_states(system, PairStates.plane(normal, sign), (u, t_n, t_t[:, None]))
+    assert found[0].tolist() == wanted.tolist()
+    assert found[1].tolist() == side.tolist()
+    alone = named_states(system, PairStates.plane(normal, sign), None)
+    assert alone[0].tolist() == normal.tolist()
+    still = (sign == 0) & (normal == Normal.CLOSED)
+    assert (alone[1][still] == 0).all()
 
 
 def test_crushing_stops_at_the_cap() -> None:

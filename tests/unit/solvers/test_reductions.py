@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 
 from concio.errors import MethodError
+from concio.problem.pair_state import Normal
 from concio.problem.solution import Status
 from concio.solvers.lcp.lemke_method import Outcome, lemke
 from concio.solvers.methods import find
 from concio.solvers.methods.forms.condensation import condense
+from concio.solvers.methods.forms.dense_solve import read_states
 from concio.solvers.methods.forms.force_method import force_method
 from concio.solvers.methods.forms.forms import mixed_form
 from concio.solvers.methods.forms.reduction import reduce
@@ -72,6 +74,34 @@ def test_all_reductions_agree_on_floating_blocks(laws: tuple[str, ...]) -> None:
         np.testing.assert_allclose(
             other.displacement, answer.displacement, atol=1e-8 * size, err_msg=f"{name} {options}"
         )
+
+
+@pytest.mark.parametrize("name", ["3m", "4m"])
+@pytest.mark.parametrize("laws", [("dilatancy", "origin"), ("tension", "gap", "cohesion")], ids="+".join)
+def test_states_of_a_complementary_solution_are_those_of_its_gaps_slips_and_forces(
+    name: str, laws: tuple[str, ...]
+) -> None:
+    """A pair is open where it has a gap and sticks where friction is left; else it slips the way it slipped."""
+    problem = small_wall(1, *laws, alpha=0.3)
+    form = mixed_form(reduce(problem), name)  # type: ignore[arg-type]
+    rough, system = form.reduction.rough, form.reduction.system
+    lcp, back = force_method(form).standard()
+    result = lemke(lcp)
+    assert result.outcome is Outcome.SOLVED
+    z, w = back(result.z, result.w)
+    normal, sign = read_states(form, z, w)
+    y, t, m = form.components(z, w), form.forces(z), problem.pairs
+    left = system.cone.strength(t[:m])[rough] - np.abs(t[m:])
+    small = 1e-7 * np.abs(y).max(), 1e-7 * np.abs(t).max()
+    gap, slip = w[:m], y[m:]
+    assert (normal[gap > small[0]] == Normal.OPEN).all()
+    assert (normal[t[:m] > small[1]] == Normal.CLOSED).all()
+    slips = np.abs(slip) > small[0]
+    assert slips.any()
+    assert (sign[rough][slips] == np.sign(slip[slips])).all()
+    sticks = (left > small[1]) & (normal[rough] == Normal.CLOSED)
+    assert sticks.any()
+    assert (sign[rough][sticks] == 0).all()
 
 
 def test_six_unknowns_are_saved_for_each_free_body() -> None:
