@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from concio.contact.joint_points import points_along
+from concio.model.body import called
 from concio.model.model import Model
 from concio.problem.contact_problem import Laws
 
@@ -115,13 +116,10 @@ class RuleBook:
 
     def __init__(self, model: Model) -> None:
         self.model = model
-        names = {b.name for b in model.bodies}
-        if any(word in names for rule in model.rules for word in rule.between):
-            self.sort = np.arange(len(model.bodies))
-        else:
-            known: dict[tuple[str, ...], int] = {}
-            keys = [(b.kind, b.role, b.layer, b.material) for b in model.bodies]
-            self.sort = np.array([known.setdefault(key, len(known)) for key in keys])
+        words = {word for rule in model.rules for word in rule.between if word != "*"}
+        known: dict[tuple[str, ...], int] = {}
+        keys = [(b.kind, b.material, *sorted(word for word in words if called(word, b))) for b in model.bodies]
+        self.sort = np.array([known.setdefault(key, len(known)) for key in keys])
         self._number = {name: k for k, name in enumerate(model.laws)}
         self._found: dict[tuple[int, int], tuple[int, float]] = {}
         self.widest = max((rule.gap for rule in model.rules), default=0.0)
