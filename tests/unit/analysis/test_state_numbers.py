@@ -101,6 +101,12 @@ def test_the_force_of_the_joint_that_carries_most_is_told_where_it_is_determined
         for share, same in ((1 + 0.3 * SAME, True), (1 - 3 * SAME, False), (1 + 3 * SAME, False), (np.nan, False)):
             other = replace(numbers, normal_force=share * numbers.normal_force)
             assert (leading_number(of, other) is not None) == same, share
+    one_side = replace(found, rows=tuple(replace(row, below=None) for row in found.rows))
+    told_of_one = leading_number(result, one_side)
+    assert told_of_one is not None
+    assert len(told_of_one.sensitivity.rows) == len(told.sensitivity.rows) > 0
+    neither = replace(found, rows=tuple(replace(row, below=None, above=None) for row in found.rows))
+    assert leading_number(result, neither) is None
     nothing = concio.solve(model, factors={"live": 0.0})
     assert leading_number(nothing, concio.state_sensitivity(nothing)) is None
 

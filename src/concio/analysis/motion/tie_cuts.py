@@ -80,4 +80,5 @@ def _limits(ties: Ties, before: MotionState, after: MotionState) -> Array:
 def _beyond(ties: Ties, state: MotionState, limit: Array) -> float:
     """Return how far the first of the ties is beyond its limit, over that; negative where none has reached it."""
     finite = np.isfinite(limit)
-    return float(((_elongation(ties, state) - limit) / np.maximum(np.abs(limit), 1e-12))[finite].max(initial=-np.inf))
+    long, limit = _elongation(ties, state)[finite], limit[finite]
+    return float(((long - limit) / np.maximum(np.abs(limit), 1e-12)).max(initial=-np.inf))
