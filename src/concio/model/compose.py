@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from itertools import product
 from typing import Literal
 
 import numpy as np
@@ -18,6 +19,7 @@ from concio.errors import InputError
 from concio.kinematics.rigid import plane_rotation, rotation_matrix
 from concio.model.model import Body, Load, Model, Point, Support, Tie, called
 from concio.model.polyhedron import Polyhedron
+from concio.model.rules import fits
 from concio.model.stages import Stage
 from concio.units import degrees, quantity
 
@@ -104,26 +106,42 @@ def place(
     for load in model.loads:
         if load.bodies and not any(called(word, b) for word in load.bodies for b in left):
             continue
-        kept = tuple(renamed(w) for w in load.bodies if any(called(w, b) for b in left))
+        kept = tuple(word for w in load.bodies for word in _relabelled(w, label, left, called))
         kept_loads.append(replace(_moved_load(load, matrix, shift, ways), bodies=kept))
     changes = []
     for change in model.temperatures:
-        kept = tuple(renamed(w) for w in change.bodies if any(called(w, b) for b in left))
+        kept = tuple(word for w in change.bodies for word in _relabelled(w, label, left, called))
         if kept or not change.bodies:
             place = None if change.at is None else _point(change.at, matrix, shift)
             along = _point(change.gradient, matrix) if change.gradient else ()
             changes.append(replace(change, bodies=kept, at=place, gradient=along))
     ties = [_moved_tie(t, matrix, shift, label, renamed) for t in model.ties if not {t.body_a, t.body_b} & gone]
     rules = [
-        replace(rule, between=(renamed(rule.between[0]), renamed(rule.between[1])))
+        replace(rule, between=(p, q))
         for rule in model.rules
-        if all(any(called(w, b) for b in left) for w in rule.between)
+        for p, q in product(*(_relabelled(w, label, left, fits) for w in rule.between))
     ]
     stages = tuple(_moved_stage(s, matrix, shift, renamed) for s in model.stages)
     return replace(
         model, bodies=bodies, supports=tuple(supports), loads=tuple(kept_loads), ties=tuple(ties), rules=tuple(rules),
         stages=stages, temperatures=tuple(changes), fill=None, vehicle=None,
     )  # fmt: skip
+
+
+def _relabelled(
+    word: str, label: str, left: Sequence[Body | Polyhedron], names: Callable[[str, Body | Polyhedron], bool]
+) -> tuple[str, ...]:
+    """Return the words by which the bodies that are left, renamed, are found: names and patterns of names change.
+
+    A word may be the name of one body and the role, the layer or the material of others.
+    """
+    fitting = [b for b in left if names(word, b)]
+    if "*" in word and word != "*":
+        return (label + word,) if fitting else ()
+    found = [label + word] if any(b.name == word for b in fitting) else []
+    others = not label or word == "*"
+    found += [word] if any(others or b.name != word for b in fitting) else []
+    return tuple(dict.fromkeys(found))
 
 
 def _motion(

@@ -55,12 +55,13 @@ class JointRule:
 
     def matches(self, a: Body | Polyhedron, b: Body | Polyhedron) -> bool:
         """Return whether the rule applies to interfaces between ``a`` and ``b``."""
-
-        def fits(word: str, body: Body | Polyhedron) -> bool:
-            return called(word, body) or (word == body.material != "" and body.kind != "fixed")
-
         p, q = self.between
         return (fits(p, a) and fits(q, b)) or (fits(p, b) and fits(q, a))
+
+
+def fits(word: str, body: Body | Polyhedron) -> bool:
+    """Return whether a word of a rule names a body: as in loads, or by its material where it is not fixed."""
+    return called(word, body) or (word == body.material != "" and body.kind != "fixed")
 
 
 def check_rules(rules: Sequence[JointRule], bodies: Sequence[Body | Polyhedron]) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 
 from concio.arguments import strict
 from concio.errors import InputError
+from concio.model.generate.own_words import everything_of, own_words, pattern_of, united_rules
 from concio.model.interfaces.detect import detect_interfaces
 from concio.model.interfaces.patches import detect_patches
 from concio.model.materials import JointLaw
@@ -81,23 +82,22 @@ def merged(models: Sequence[Model], *, title: str = "", joint: JointLaw | float 
     materials, material_names = _united([m.materials for m in models])
     laws, law_names = _united([m.laws for m in models])
     bodies = [
-        replace(b, material=material_names[k].get(b.material, b.material), mesh_size=b.mesh_size or m.mesh_size)
-        for k, m in enumerate(models)
-        for b in m.bodies
+        [replace(b, material=names.get(b.material, b.material), mesh_size=b.mesh_size or m.mesh_size) for b in m.bodies]
+        for m, names in zip(models, material_names, strict=True)
     ]
-    rules = _rules(models, law_names)
+    rules = united_rules(models, law_names, material_names, bodies)
     if joint is not None:
         law = joint if isinstance(joint, JointLaw) else JointLaw(joint)
         laws["between parts"] = law
         rules += [
-            JointRule("between parts", (_everything(models, i), _everything(models, j)))
+            JointRule("between parts", (everything_of(models, i), everything_of(models, j)))
             for i, j in combinations(range(len(models)), 2)
         ]
     tolerances = [m.gap_tolerance for m in models if m.gap_tolerance is not None]
     reaches = [m.gap_reach for m in models if m.gap_reach is not None]
     return replace(
         first,
-        bodies=tuple(bodies),
+        bodies=tuple(b for own in bodies for b in own),
         materials=materials,
         laws=laws,
         rules=tuple(rules),
@@ -119,9 +119,9 @@ def merged(models: Sequence[Model], *, title: str = "", joint: JointLaw | float 
 def _temperatures(models: Sequence[Model]) -> tuple[Temperature, ...]:
     """Return the changes of temperature of all parts, each in the bodies of its own part."""
     found = []
-    for model in models:
+    for k, model in enumerate(models):
         free = tuple(b.name for b in model.bodies if b.kind != "fixed")
-        found += [replace(t, bodies=t.bodies or free) for t in model.temperatures]
+        found += [replace(t, bodies=own_words(models, k, t.bodies) or free) for t in model.temperatures]
     return tuple(found)
 
 
@@ -184,48 +184,13 @@ def _united(tables: Sequence[Mapping[str, T]]) -> tuple[dict[str, T], list[dict[
     return every, changed
 
 
-def pattern_of(models: Sequence[Model], number: int) -> str | None:
-    """Return the pattern of names that all bodies of a part have and no others, None where there is none."""
-    names = [b.name for b in models[number].bodies]
-    prefix = names[0].partition("-")[0] + "-"
-    others = [b.name for k, m in enumerate(models) for b in m.bodies if k != number]
-    alone = all(name.startswith(prefix) for name in names) and not any(name.startswith(prefix) for name in others)
-    return prefix + "*" if alone else None
-
-
-def _everything(models: Sequence[Model], number: int) -> str:
-    """Return a word that names all bodies of a part and no others."""
-    pattern = pattern_of(models, number)
-    if pattern is None:
-        msg = f"part {number + 1} has joint laws of its own, but its blocks have no name in common"
-        raise InputError(msg, where="merge", hint="give each part a name: concio.place(part, name='left')")
-    return pattern
-
-
-def _rules(models: Sequence[Model], laws: Sequence[Mapping[str, str]]) -> list[JointRule]:
-    """Return the rules of all parts, those on everything kept to their part where parts differ in them."""
-    own = [
-        [replace(r, law=names.get(r.law, r.law)) for r in m.rules] for m, names in zip(models, laws, strict=True)
-    ]
-    general = [[r for r in rules if r.between == ("*", "*")][-1:] for rules in own]
-    if all(g == general[0] for g in general):
-        return list(dict.fromkeys(r for rules in own for r in rules))
-    found = general[0][:1]
-    for k, rules in enumerate(own):
-        word = _everything(models, k)
-        for rule in rules:
-            p, q = (word if w == "*" else w for w in rule.between)
-            found.append(replace(rule, between=(p, q)))
-    return list(dict.fromkeys(found))
-
-
 def _loads(models: Sequence[Model]) -> tuple[Load, ...]:
     """Return the loads of all parts; those on everything name the bodies of their part unless all parts have them."""
     found: list[Load] = []
     for k, model in enumerate(models):
         for load in model.loads:
             if load.bodies:
-                found.append(load)
+                found.append(replace(load, bodies=own_words(models, k, load.bodies)))
             elif all(load in other.loads for other in models):
                 found += [load] if k == 0 else []
             else:
