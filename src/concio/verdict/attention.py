@@ -77,6 +77,7 @@ def attention_of(model: Model, detection: Detection) -> tuple[str, ...]:
         *lost_loads(model),
         *odd_weights(model),
         *_idle_rules(model, detection),
+        *_idle_tables(model),
         *implausible(model),
     )
     return tuple(dict.fromkeys(found))
@@ -159,6 +160,23 @@ def _idle_rules(model: Model, detection: Detection) -> tuple[str, ...]:
         for k, rule in enumerate(model.rules, 1)
         if id(rule) not in deciding and rule.between != ("*", "*")
     )
+
+
+def _idle_tables(model: Model) -> tuple[str, ...]:
+    """Return a sentence for each joint law that no rule names, and for each material that no body is of.
+
+    What equals one that is used may have been used: generators give laws and materials names of their own. "block" is
+    what readers of solids and drawings call the first material, and need not be that of a body.
+    """
+    ruling, made = {rule.law for rule in model.rules}, {b.material for b in model.bodies} | {"block"}
+    laws = [model.laws[name] for name in model.laws if name in ruling]
+    stones = [model.materials[name] for name in model.materials if name in made]
+    return (
+        *(f"joint law '{name}' is stated, and no rule names it: it holds in no joint"
+          for name, law in model.laws.items() if law not in laws),
+        *(f"material '{name}' is stated, and no body is made of it"
+          for name, stone in model.materials.items() if stone not in stones),
+    )  # fmt: skip
 
 
 def torsion(model: Model, detection: Detection, contact_model: Mapping[str, int]) -> tuple[str, ...]:

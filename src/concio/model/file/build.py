@@ -232,6 +232,12 @@ def _from_solids(data: FileTable, materials: Materials, laws: Laws, folder: Path
         options["friction"] = next(iter(laws.values()))
     others = {name: material for name, material in materials.items() if name != "block"}
     model = model_from_solids(folder / str(data.solids_file), materials=others, **options)
+    lost = [b.name for b in model.free_bodies if b.material == "block"]
+    if lost and "block" not in materials and len(materials) > 1:
+        more = f" and {len(lost) - 1} more" if len(lost) > 1 else ""
+        msg = f"there is no material for block '{lost[0]}'{more}: {len(materials)} are defined, and no layer says which"
+        hint = "give its layer or its name one in [solids.layers], or add [materials.block] for all other blocks"
+        raise InputError(msg, hint=hint)
     return replace(model, laws={}, rules=()) if laws else model
 
 
