@@ -15,6 +15,9 @@ if TYPE_CHECKING:
 STRONG = 0.5
 """Acceleration on rock beyond that of any site in Italy [g]."""
 
+ROUNDED = 0.01
+"""Share by which a return period may be rounded: 475 years stand for 474.6."""
+
 NEAR = 1e-9
 """Relative difference below which two shares of the mass are one."""
 
@@ -38,6 +41,10 @@ def assessment_notes(
 
     lines = [say("note_strong", a_g=found.site.at(level).a_g, level=level) for level in found.levels
              if found.site.at(level).a_g > STRONG]  # fmt: skip
+    for level in found.levels:
+        given, period = found.site.at(level).T_R, found.site.period(level)
+        if abs(given - period) > ROUNDED * period:
+            lines.append(say("note_period", level=level, given=given, own=period))
     of_level = float(rules.tables["knowledge"][found.knowledge])
     if found.confidence_by == "given" and found.confidence < of_level:
         lines.append(say("note_confidence", given=found.confidence, level=found.knowledge, own=of_level))

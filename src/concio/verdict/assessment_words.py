@@ -101,6 +101,7 @@ EN = {
     "ground_bound": "forces in equilibrium and a motion prove the least multiplier of push {way} over all motions "
     "with associated friction, {alpha}, with a duality gap of {gap}; with Coulomb friction the least is not above it",
     "ground_open": "things that were asked for or are to be expected and were not checked: {n}; they are listed below",
+    "note_period": "the hazard given for {level} is that of a return period of {given} years; the code asks for {own}",
     "note_strong": "a_g = {a_g} g on rock at {level} is more than any site in Italy has; check that g was meant",
     "note_confidence": "the confidence factor of {given} was given by the author; that of {level} would be {own}",
     "note_q": "the behaviour factor q of {given} was given by the author; that of the code is {own}",
@@ -223,6 +224,7 @@ IT = {
     "moti con attrito associato, {alpha}, con uno scarto di dualità di {gap}; con l'attrito di Coulomb il minimo non è "
     "maggiore",
     "ground_open": "cose richieste o da attendersi e non esaminate: {n}; sono elencate sotto",
+    "note_period": "la pericolosità data per {level} è di un periodo di ritorno di {given} anni; la norma chiede {own}",
     "note_strong": "a_g = {a_g} g su roccia allo {level} supera quella di ogni sito italiano: è in g?",
     "note_confidence": "il fattore di confidenza {given} è indicato dall'autore; quello di {level} sarebbe {own}",
     "note_q": "il fattore di comportamento q = {given} è indicato dall'autore; quello della norma è {own}",

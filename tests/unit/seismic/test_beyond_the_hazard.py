@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 import concio
 from concio.analysis.seismic.checks import capacity_acceleration
 from concio.errors import InputError
+from concio.verdict.assessment_notes import assessment_notes as attention
 from samples import sample
 
 PLACE = {"F0": 2.45, "Tc": 0.32}
@@ -67,3 +68,15 @@ def test_a_table_says_nothing_of_return_periods_beyond_its_end(last: float, use:
         elif period <= last:
             assert level in place.levels
             assert place.at(level).a_g == pytest.approx(0.2 if period >= last else place.interpolated(period).a_g)
+
+
+@settings(max_examples=sample(2, 6, 20), deadline=None)
+@given(st.sampled_from(["I", "II", "III", "IV"]), st.floats(50.0, 2000.0), st.sampled_from(["en", "it"]))
+def test_a_hazard_of_another_return_period_is_said(use: str, given_period: float, language: str) -> None:
+    """The acceleration of 200 years, stated as such for SLV, was taken for that of 475 without a word."""
+    place = concio.Site({"SLV": {"a_g": 0.1, "T_R": given_period, **PLACE}}, use_class=use)
+    block = concio.column(width=1.0, height=2.0, blocks=1, block="rigid", unit_weight=20.0, thickness=50.0)
+    found = concio.assess(block, site=place, levels=["SLV"], direction="right")
+    own = -place.life / math.log(0.9)
+    lines = [line for line in attention(found, language) if ("return period" in line or "periodo di ritorno" in line)]
+    assert bool(lines) == (abs(given_period - own) > 0.01 * own)

@@ -152,9 +152,9 @@ class Site:
         if isinstance(self.hazard, Mapping):
             return tuple(level for level in known if level in self.hazard)
         made = (level for level in known if not self.rules.tables["levels"][level].get("on_request", False))
-        return tuple(level for level in made if self._period(level) <= self._table_ends)
+        return tuple(level for level in made if self.period(level) <= self._table_ends)
 
-    def _period(self, level: str) -> float:
+    def period(self, level: str) -> float:
         """Return the return period of a limit state, at most the longest of the code [years]."""
         longest = float(self.rules.tables["life"].get("longest", math.inf))
         return min(self.rules.return_period(level, self.life), longest)
@@ -194,11 +194,11 @@ class Site:
                 raise InputError(msg, hint="known: " + ", ".join(self.hazard))
             given: Hazard = self.hazard[level]
             return given if not math.isnan(given.T_R) else replace(given, T_R=T_R)
-        if self._period(level) > self._table_ends:
+        if self.period(level) > self._table_ends:
             msg = f"{level} has a return period of {T_R:.0f} years, and the table of hazards ends at "
             msg += f"{self.hazard[-1].T_R:g}: how hard it shakes then is not known"
             raise InputError(msg, where="hazard", hint="give the table a longer return period, or leave that level out")
-        return self.interpolated(self._period(level))
+        return self.interpolated(self.period(level))
 
     def interpolated(self, T_R: float) -> Hazard:
         """Return the hazard of a return period from the table: linear in the logarithms, constant beside it."""
