@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 
-from concio.analysis.motion.mover import Mover, Row
+from concio.analysis.motion import mover as movers
+from concio.analysis.motion.mover import CERTIFIED, HALVINGS, SUNK, Mover, Row
 from concio.analysis.motion.push_apart import PARTS, _at
 
 
@@ -98,3 +101,123 @@ def test_where_a_structure_stops_following_is_told_to_a_small_part_of_the_way(
     found, got = _at(one, run, wanted)  # type: ignore[arg-type]
     assert found is None
     assert 0 <= way * (end - got) <= 2 * abs(wanted - begin) / PARTS
+
+
+def maker(
+    monkeypatch: pytest.MonkeyPatch,
+    residual: Callable[[float], float],
+    *,
+    adaptive: bool = True,
+    struck: Callable[[float], float] = lambda h: 0.0,
+    allowed: float = np.inf,
+    meets: float | None = None,
+    longest: float = np.inf,
+) -> tuple[Mover, SimpleNamespace]:
+    """Return what makes steps whose residual depends on their length, and what it did."""
+    done = SimpleNamespace(tried=[], told=[])
+    mover: Mover = object.__new__(Mover)
+    mover.step, mover.h, mover.calm, mover.adaptive, mover.outran = 1.0, 1.0, 0, adaptive, ""
+    mover.drive = lambda time, h: (time, h)  # type: ignore[assignment, return-value]
+
+    def step(state: SimpleNamespace, h: float, driven: tuple[float, float]) -> tuple[SimpleNamespace, SimpleNamespace]:
+        assert driven == (state.time, h)
+        done.tried.append(h)
+        solution = SimpleNamespace(residual=residual(h))
+        return SimpleNamespace(time=state.time + h), SimpleNamespace(
+            solution=solution, struck=struck(h), meets=None, part=None, left=0.5
+        )
+
+    def located(found: object, part: object, h: float) -> float | None:
+        return meets if meets is not None and h > meets else None
+
+    mover.stepper = SimpleNamespace(step=step, maker=SimpleNamespace(width=1.0, ties=None))  # type: ignore[assignment]
+    mover.meetings = SimpleNamespace(  # type: ignore[assignment]
+        length=lambda time, h: min(h, allowed), located=located, after=lambda *told: done.told.append(told), until=0.0
+    )
+    mover.pace = SimpleNamespace(  # type: ignore[assignment]
+        longest=lambda state, h: longest, outrun=lambda state, h, least: "b" if longest < least else ""
+    )
+    return mover, done
+
+
+BEGIN = SimpleNamespace(time=2.0)
+
+
+def test_a_step_is_halved_until_it_is_certified(monkeypatch: pytest.MonkeyPatch) -> None:
+    mover, done = maker(monkeypatch, lambda h: 0.5 * CERTIFIED if h <= 0.3 else 2 * CERTIFIED)
+    made = mover._made(BEGIN, 1.0)  # type: ignore[arg-type]
+    assert made is not None
+    assert (made[0].time, made[2], done.tried) == (2.25, 0.25, [1.0, 0.5, 0.25])
+    assert done.told == [(2.0, False, np.inf, 0.25)]
+    stiff, done = maker(monkeypatch, lambda h: 2 * CERTIFIED)
+    assert stiff._made(BEGIN, 1.0) is None  # type: ignore[arg-type]
+    assert done.tried == [0.5**k for k in range(HALVINGS + 1)]
+    fixed, done = maker(monkeypatch, lambda h: 2 * CERTIFIED, adaptive=False)
+    assert fixed._made(BEGIN, 1.0) is None  # type: ignore[arg-type]
+    assert done.tried == [1.0]
+
+
+def test_a_step_in_which_a_body_sinks_in_is_halved_and_kept_where_it_is_the_least(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    for far, count in ((0.3, 3), (0.0, HALVINGS + 1)):
+        mover, done = maker(monkeypatch, lambda h: 0.0, struck=lambda h, far=far: 2 * SUNK if h > far else 0.5 * SUNK)
+        made = mover._made(BEGIN, 1.0)  # type: ignore[arg-type]
+        assert made is not None
+        assert len(done.tried) == count
+        assert made[0].time == 2.0 + 0.5 ** (count - 1)
+    fixed, done = maker(monkeypatch, lambda h: 0.0, struck=lambda h: 2 * SUNK, adaptive=False)
+    assert fixed._made(BEGIN, 1.0)[2] == 1.0  # type: ignore[arg-type, index]
+
+
+def test_an_impact_ends_a_step_where_the_step_to_it_is_certified(monkeypatch: pytest.MonkeyPatch) -> None:
+    mover, done = maker(monkeypatch, lambda h: 0.0, meets=0.4)
+    made = mover._made(BEGIN, 1.0)  # type: ignore[arg-type]
+    assert made is not None
+    assert (made[0].time, made[2], done.tried) == (2.4, 0.0, [1.0, 0.4])
+    assert done.told == [(2.0, True, 0.5, 1.0)]
+    other, done = maker(monkeypatch, lambda h: 2 * CERTIFIED if h == 0.4 else 0.0, meets=0.4)
+    made = other._made(BEGIN, 1.0)  # type: ignore[arg-type]
+    assert made is not None
+    assert (made[0].time, made[2], done.tried) == (3.0, 1.0, [1.0, 0.4])
+    fixed, done = maker(monkeypatch, lambda h: 0.0, meets=0.4, adaptive=False)
+    assert fixed._made(BEGIN, 1.0)[2] == 1.0  # type: ignore[arg-type, index]
+
+
+def test_steps_that_meetings_or_speed_make_shorter(monkeypatch: pytest.MonkeyPatch) -> None:
+    """They say nothing of the length of the next one; what outruns the least step cannot be followed."""
+    mover, done = maker(monkeypatch, lambda h: 0.0, allowed=0.7)
+    assert mover._made(BEGIN, 1.0)[2] == 0.0  # type: ignore[arg-type, index]
+    assert done.tried == [0.7]
+    fast, done = maker(monkeypatch, lambda h: 0.0, longest=0.3)
+    assert fast._made(BEGIN, 1.0)[2] == 0.0  # type: ignore[arg-type, index]
+    assert done.tried == [0.25]
+    faster, done = maker(monkeypatch, lambda h: 0.0, longest=1e-9)
+    assert faster._made(BEGIN, 1.0) is None  # type: ignore[arg-type]
+    assert (faster.outran, done.tried) == ("b", [])
+
+
+@pytest.mark.parametrize(("error", "taken"), [(0.5, True), (2.0, False)])
+def test_a_step_is_cut_where_a_tie_gives_way_if_the_cut_is_certified(
+    monkeypatch: pytest.MonkeyPatch, error: float, taken: bool
+) -> None:
+    mover, _ = maker(monkeypatch, lambda h: error * CERTIFIED if h == 0.3 else 0.0)
+    monkeypatch.setattr(movers, "ties_give_way", lambda before, after: after.time > 2.3)
+    asked: list[tuple[float, float]] = []
+
+    def where(
+        ties: object, before: object, after: object, at: Callable[[float], Any], whole: float, least: float
+    ) -> Any:
+        asked.append((whole, least))
+        return at(0.3)
+
+    monkeypatch.setattr(movers, "where_ties_give_way", where)
+    made = mover._attempt(BEGIN, 1.0)  # type: ignore[arg-type]
+    assert made is not None
+    assert asked == [(1.0, movers.LEAST_CUT)]
+    assert (made[0].time, made[2]) == ((2.3, 0.0) if taken else (3.0, 1.0))
+    assert mover.meetings.until == (3.0 if taken else 0.0)
+    mover._attempt(BEGIN, 0.2)  # type: ignore[arg-type]
+    mover.adaptive = False
+    mover._attempt(BEGIN, 1.0)  # type: ignore[arg-type]
+    assert len(asked) == 1  # none gave way, or steps are as long as they are
