@@ -130,7 +130,7 @@ def maker(
     def located(found: object, part: object, h: float) -> float | None:
         return meets if meets is not None and h > meets else None
 
-    mover.stepper = SimpleNamespace(step=step, maker=SimpleNamespace(width=1.0, ties=None))  # type: ignore[assignment]
+    mover.stepper = SimpleNamespace(step=step, maker=SimpleNamespace(width=4.0, ties=None))  # type: ignore[assignment]
     mover.meetings = SimpleNamespace(  # type: ignore[assignment]
         length=lambda time, h: min(h, allowed), located=located, after=lambda *told: done.told.append(told), until=0.0
     )
@@ -161,12 +161,12 @@ def test_a_step_in_which_a_body_sinks_in_is_halved_and_kept_where_it_is_the_leas
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     for far, count in ((0.3, 3), (0.0, HALVINGS + 1)):
-        mover, done = maker(monkeypatch, lambda h: 0.0, struck=lambda h, far=far: 2 * SUNK if h > far else 0.5 * SUNK)
+        mover, done = maker(monkeypatch, lambda h: 0.0, struck=lambda h, far=far: SUNK * (8.0 if h > far else 2.0))
         made = mover._made(BEGIN, 1.0)  # type: ignore[arg-type]
         assert made is not None
         assert len(done.tried) == count
         assert made[0].time == 2.0 + 0.5 ** (count - 1)
-    fixed, done = maker(monkeypatch, lambda h: 0.0, struck=lambda h: 2 * SUNK, adaptive=False)
+    fixed, done = maker(monkeypatch, lambda h: 0.0, struck=lambda h: 8.0 * SUNK, adaptive=False)
     assert fixed._made(BEGIN, 1.0)[2] == 1.0  # type: ignore[arg-type, index]
 
 

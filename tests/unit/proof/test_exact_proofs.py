@@ -71,6 +71,26 @@ def test_fractions_with_more_digits_than_are_sought_are_told(monkeypatch: pytest
     assert not file.with_suffix(".proof.json").exists()
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_singular_systems_have_no_solution_and_regular_ones_theirs(seed: int) -> None:
+    """The last row is a sum of the others, which rounding hides from the factorisation, or not."""
+    rng = np.random.default_rng(seed)
+    n = 5
+    parts = zip(rng.integers(-9, 10, n * n).tolist(), rng.integers(1, 9, n * n).tolist(), strict=True)
+    entries = [Fraction(a, b) for a, b in parts]
+    matrix = [entries[n * i : n * i + n] for i in range(n)]
+    weights = [Fraction(int(v), 7) for v in rng.integers(-5, 6, n - 1)]
+    matrix[-1] = [sum((w * row[j] for w, row in zip(weights, matrix, strict=False)), Fraction(0)) for j in range(n)]
+    known = [Fraction(int(v), 11) for v in rng.integers(-40, 40, n)]
+    for singular in (True, False):
+        if not singular:
+            matrix[-1][seed % n] += 1
+        right = [sum((a * x for a, x in zip(row, known, strict=True)), Fraction(0)) for row in matrix]
+        right[-1] += singular  # no solution at all
+        found = solve_exactly([{j: v for j, v in enumerate(row) if v} for row in matrix], right)
+        assert found == (None if singular else known)
+
+
 def eliminated(rows: list[dict[int, Fraction]], right: list[Fraction]) -> list[Fraction]:
     n = len(rows)
     table = [[row.get(j, Fraction(0)) for j in range(n)] + [b] for row, b in zip(rows, right, strict=True)]
