@@ -117,8 +117,10 @@ class RuleBook:
     def __init__(self, model: Model) -> None:
         self.model = model
         words = {word for rule in model.rules for word in rule.between if word != "*"}
-        known: dict[tuple[str, ...], int] = {}
-        keys = [(b.kind, b.material, *sorted(word for word in words if called(word, b))) for b in model.bodies]
+        patterns = [word for word in sorted(words) if "*" in word]
+        known: dict[tuple[object, ...], int] = {}
+        keys = [(b.kind, b.material, frozenset(words & {b.name, b.role, b.layer}), *(called(p, b) for p in patterns))
+                for b in model.bodies]  # fmt: skip
         self.sort = np.array([known.setdefault(key, len(known)) for key in keys])
         self._number = {name: k for k, name in enumerate(model.laws)}
         self._found: dict[tuple[int, int], tuple[int, float]] = {}
