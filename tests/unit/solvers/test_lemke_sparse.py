@@ -50,17 +50,25 @@ def test_rows_replaced_one_by_one_give_the_inverse_of_the_new_matrix() -> None:
     np.testing.assert_array_equal(factor.matrix().toarray(), dense)
 
 
-def test_digits_survive_a_nearly_singular_matrix_on_the_way() -> None:
+@pytest.mark.parametrize("unit", [1e-6, 1.0, 1e6])
+def test_digits_survive_a_nearly_singular_matrix_on_the_way(unit: float) -> None:
+    """In any unit; a matrix that was never nearly singular is not factorised again."""
     rng = np.random.default_rng(1)
     n = 30
-    dense = rng.normal(size=(n, n))
+    dense = unit * rng.normal(size=(n, n))
     good = dense[7].copy()
-    dense[7] = dense[8] + 1e-12 * good  # singular but for the last digits
     everything = np.arange(n)
+    regular = UpdatedFactor([(everything, row.copy()) for row in dense])
+    regular.replace(7, (everything, good[::-1]))
+    regular.column(8)
+    assert regular.factorisations == 1
+    dense[7] = dense[8] + 1e-12 * good  # singular but for the last digits
     factor = UpdatedFactor([(everything, row.copy()) for row in dense])
     factor.replace(7, (everything, good))
     dense[7] = good
-    np.testing.assert_allclose(factor.column(8), np.linalg.solve(dense, np.eye(n)[8]), rtol=0, atol=1e-11)
+    wanted = np.linalg.solve(dense, np.eye(n)[8])
+    np.testing.assert_allclose(factor.column(8), wanted, rtol=0, atol=1e-11 / unit)
+    assert factor.factorisations == 2
 
 
 @pytest.mark.long

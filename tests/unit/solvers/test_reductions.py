@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from concio.problem.solution import Status
 from concio.solvers.lcp.lemke_method import Outcome, lemke
 from concio.solvers.methods import find
 from concio.solvers.methods.forms.condensation import condense
-from concio.solvers.methods.forms.dense_solve import read_states
+from concio.solvers.methods.forms.dense_solve import DenseRun, read_states
 from concio.solvers.methods.forms.force_method import force_method
 from concio.solvers.methods.forms.forms import mixed_form
 from concio.solvers.methods.forms.reduction import reduce
@@ -196,3 +197,22 @@ def test_progress_can_stop_the_dense_methods() -> None:
     answer = find("lee")(wall(2, 2), progress=stop)
     assert answer.status is Status.CANCELLED
     assert seen == ["lee"]
+
+
+def test_the_motion_of_a_ray_is_that_of_its_bodies_at_any_length() -> None:
+    """Of two rigid bodies of which one moves: differences of the two halves of the split problem."""
+    problem = small_wall(1, alpha=0.1)
+    form = mixed_form(reduce(problem), "4m")
+    r, n, R = form.motions, form.size, form.reduction.system.problem.R
+    alpha = np.zeros(r)
+    alpha[1], alpha[4] = 3.0, -1.5
+    for length in (1.0, 1e-9, 1e7):
+        ray = np.concatenate([np.ones(n), length * np.maximum(alpha, 0) + 2.0, length * np.maximum(-alpha, 0) + 2.0])
+        result = SimpleNamespace(ray=SimpleNamespace(dz=ray))
+        velocity = DenseRun._ray_velocity(form, "split", result)  # type: ignore[arg-type]
+        assert velocity is not None
+        np.testing.assert_allclose(velocity, R @ (alpha / 3.0), atol=1e-6)
+        assert DenseRun._ray_velocity(form, "condensation", result) is None  # type: ignore[arg-type]
+    still = SimpleNamespace(ray=SimpleNamespace(dz=np.ones(n + 2 * r)))
+    assert DenseRun._ray_velocity(form, "split", still) is None  # type: ignore[arg-type]
+    assert DenseRun._ray_velocity(form, "split", SimpleNamespace(ray=None)) is None  # type: ignore[arg-type]
