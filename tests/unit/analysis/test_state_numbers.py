@@ -147,6 +147,23 @@ def test_the_block_that_settles_most_is_named_with_what_it_depends_on(deep: int,
     assert leading_number(idle, concio.state_sensitivity(idle)) is None
 
 
+@pytest.mark.parametrize("deep", [2, 3])
+def test_stresses_stand_where_their_block_does(deep: int) -> None:
+    """Inside of it, evenly spread; above each there is on average the weight that it carries."""
+    heights = {"tall": 2.0, "low": 1.0}
+    result = concio.solve(pillars(heights, 4e5, deep))
+    for name, height in heights.items():
+        b = result.body_index(name)
+        place, stress = result.stress.at_points(b)
+        low, high = result.nodes(name).min(axis=0), result.nodes(name).max(axis=0)
+        assert ((place > low) & (place < high)).all()
+        assert place.mean(axis=0) == pytest.approx((low + high) / 2)
+        assert (stress[:, deep - 1] + 20.0 * (height - place[:, -1])).mean() == pytest.approx(0.0, abs=1e-9)
+        assert stress.mean(axis=0) == pytest.approx(result.stress.mean[b], abs=1e-9)
+        falls = result.stress.at_nodes(b)[:, deep - 1] @ (result.nodes(name)[:, -1] - height / 2)
+        assert falls > 0  # less pressed above
+
+
 def test_of_a_hard_rigid_block_that_settles_most_a_force_is_told() -> None:
     """A rigid block on an elastic one: its own settlement is not that of a node."""
     model = pillars({"pillar": 1.0}, 4e5)

@@ -12,7 +12,7 @@ from scipy.stats import chi2, norm
 
 from concio.analysis.cracks.additions import additions_of
 from concio.analysis.cracks.cause import cause_of
-from concio.analysis.cracks.fit import Fitter, without_each
+from concio.analysis.cracks.fit import FAR, Fitter, without_each
 from concio.analysis.cracks.search import search
 
 CONFIDENCE = 0.95
@@ -138,3 +138,42 @@ def test_intervals_end_at_the_bounds_of_motions_and_no_state_beyond_is_asked_for
     assert (found.high <= fitter.high).all()
     assert found.high[0] == pytest.approx(fitter.high[0], rel=1e-3)
     assert found.high[1] < 0.1 * fitter.high[1]
+
+
+@pytest.mark.parametrize(("first_motion", "second_motion"), [(3.0, -1.0), (0.5, -0.1)])
+def test_what_coarser_paths_turned_down_clearly_is_not_fitted_again(
+    monkeypatch: pytest.MonkeyPatch, first_motion: float, second_motion: float
+) -> None:
+    """What is near to be allowed is, and what may be for the change of the readings; causes stay the same."""
+    fitter = measured(4, 8, 4, {1: first_motion, 2: second_motion})
+    names = ["m0", "m1", "m2", "m3"]
+    first = search(fitter, names, most=3, beyond=3, confidence=CONFIDENCE)
+    known = {t.chosen: t for t in first.trials}
+    fitted: list[tuple[int, ...]] = []
+    fit = fitter.fit
+
+    def counted(chosen: tuple[int, ...], **options: object) -> object:
+        fitted.append(chosen)
+        return fit(chosen, **options)
+
+    monkeypatch.setattr(fitter, "fit", counted)
+    counts = []
+    for change in (0.0, *np.geomspace(0.1, 300.0, 14).tolist(), 1e9):
+        fitted.clear()
+        found = search(fitter, names, most=3, beyond=3, confidence=CONFIDENCE, coarse=first.trials, change=change)
+        assert {f.chosen for f in found.accepted} == {f.chosen for f in first.accepted}
+        kept = {t.chosen for t in found.trials if t.coarse}
+        assert kept.isdisjoint(fitted)
+        for chosen in kept | set(fitted):
+            limit = chi2.ppf(CONFIDENCE, 8 - len(chosen))
+            least = np.sqrt(without_each(known[chosen].fit).min())
+            far = known[chosen].fit.misfit > limit and least > min(np.sqrt(FAR * limit), np.sqrt(limit) + 2.0 * change)
+            assert (chosen in kept) == far, chosen
+        counts.append(len(fitted))
+    assert counts == sorted(counts)
+    assert counts[0] < counts[-1] or counts[0] < len(first.trials) - 1
+    fitted.clear()
+    left = [replace(t, fit=replace(t.fit, left=True)) if t.fit is not None else t for t in first.trials]
+    search(fitter, names, most=3, beyond=3, confidence=CONFIDENCE, coarse=left, change=1e9)
+    allowed = {t.chosen for t in first.trials if t.fit.misfit <= chi2.ppf(CONFIDENCE, 8 - len(t.chosen))}
+    assert set(fitted) <= allowed

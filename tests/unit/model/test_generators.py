@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import concio
 from concio.errors import GeometryError, InputError
+from concio.model.generate.arch_on_piers import _cut
 from concio.model.generate.arches import arch
 from concio.model.generate.bonds import SHORTEST, Course, bond_courses, head_joints, without_short_pieces
 from concio.model.generate.columns import buttress, column
@@ -395,3 +397,31 @@ def test_blocks_of_a_buttress_are_about_as_long_as_asked_for(unit: float) -> Non
         assert [p for p, _ in ends[1:]] == pytest.approx([q for _, q in ends[:-1]])
         assert (ends[0][0], ends[-1][1]) == pytest.approx((0.0, base + (top - base) * c / n))
         assert len(row) >= (base + (top - base) * c / n) / (1.35 * length)
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "course", "widths"),
+    [
+        (-3.0, -0.4, 0, [1.0, 1.0, 0.6]),
+        (-3.0, -0.4, 1, [0.5, 1.0, 1.1]),
+        (-3.0, -0.65, 0, [1.0, 1.35]),
+        (-3.0, 3.0, 2, [1.0] * 6),
+        (-3.0, 3.0, 3, [0.5, *[1.0] * 5, 0.5]),
+        (-3.0, -2.2, 0, [0.8]),
+    ],
+)
+def test_courses_beside_an_arch_are_cut_in_running_bond_from_their_outer_faces(low, high, course, widths):
+    """Left and right mirrored, at any size; what is left at the arch is no shorter than two fifths of a block."""
+    for size in (1.0, 1e-3, 1e3):
+        left = _cut(shapely.box(size * low, 0.0, size * high, 0.3 * size), 3.0 * size, size, course)
+        right = _cut(shapely.box(-size * high, 0.0, -size * low, 0.3 * size), 3.0 * size, size, course)
+        for found, wanted in ((left, widths), (right, widths[::-1])):
+            assert [b.bounds[2] - b.bounds[0] for b in found] == pytest.approx([size * w for w in wanted])
+            assert sum(b.area for b in found) == pytest.approx(0.3 * size * (high - low) * size)
+
+
+def test_the_width_of_a_course_at_a_sloping_arch_is_the_lesser_of_both_edges():
+    part = shapely.Polygon([(-3, 0), (-1.2, 0), (-0.4, 0.4), (-3, 0.4)])
+    assert [b.bounds[0] for b in _cut(part, 3.0, 1.0, 0)] == pytest.approx([-3.0, -2.0])
+    other = shapely.affinity.scale(part, xfact=-1.0, origin=(0, 0))
+    assert [b.bounds[2] for b in _cut(other, 3.0, 1.0, 0)] == pytest.approx([2.0, 3.0])
