@@ -479,6 +479,9 @@ def test_points_of_a_face_are_a_triangular_lattice_in_its_middle() -> None:
     assert (low >= 0.2).all()  # half a side of a cell from the edges, where no further row has room
     assert (low < 0.2 + row).all()
     assert (high < 0.2 + row).all()
+    for wide, tall, size in ((4.1, 2.05, 0.4), (3.1, 3.0, 0.5), (2.3, 1.1, 0.3), (0.75, 3.1, 0.2)):
+        flat = _lattice(shapely.box(2.0, -1.0, 2.0 + wide, tall - 1.0), size)
+        assert flat.min(0) - [2.0, -1.0] == pytest.approx([2.0 + wide, tall - 1.0] - flat.max(0))  # as far from both
 
 
 def test_a_gap_of_a_rule_is_added_to_that_of_the_outlines() -> None:
