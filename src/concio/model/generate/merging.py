@@ -12,7 +12,7 @@ import numpy as np
 from concio.arguments import strict
 from concio.errors import InputError
 from concio.model.generate.own_words import everything_of, own_words, pattern_of, united_rules
-from concio.model.interfaces.detect import detect_interfaces
+from concio.model.interfaces.detect import Detection, detect_interfaces
 from concio.model.interfaces.patches import detect_patches
 from concio.model.materials import JointLaw
 from concio.model.model import JointRule, Load, Model, Temperature
@@ -42,7 +42,8 @@ def merge(*models: Model, title: str = "", joint: JointLaw | float | None = None
     ------
     InputError
         Names clash, or the parts differ in dimension, element, plane or refinement; or parts touch whose laws differ,
-        and ``joint`` does not say which holds between them.
+        and ``joint`` does not say which holds between them; or bodies of a part would touch that do not touch in it,
+        because the ``gap_tolerance`` of another part is larger.
 
     Examples
     --------
@@ -95,7 +96,7 @@ def merged(models: Sequence[Model], *, title: str = "", joint: JointLaw | float 
         ]
     tolerances = [m.gap_tolerance for m in models if m.gap_tolerance is not None]
     reaches = [m.gap_reach for m in models if m.gap_reach is not None]
-    return replace(
+    whole = replace(
         first,
         bodies=tuple(b for own in bodies for b in own),
         materials=materials,
@@ -114,6 +115,9 @@ def merged(models: Sequence[Model], *, title: str = "", joint: JointLaw | float 
         vehicle=None,
         generator={"kind": "merged", "parts": tuple(str(m.generator.get("kind", "blocks")) for m in models)},
     )
+    if len({m.gap_tolerance for m in models}) > 1:
+        _as_before(models, whole)
+    return whole
 
 
 def _temperatures(models: Sequence[Model]) -> tuple[Temperature, ...]:
@@ -138,11 +142,7 @@ def _agreed(models: Sequence[Model], whole: Model) -> None:
     ------
     InputError
     """
-    tolerance = whole.gap_tolerance if whole.gap_tolerance is not None else 1e-6 * whole.size
-    if whole.dim == 2:
-        found = detect_interfaces(whole.outlines, tolerance=tolerance, reach=whole.gap_reach)
-    else:
-        found = detect_patches(whole.polyhedra, tolerance=tolerance, reach=whole.gap_reach)
+    found = _detected(whole, whole.gap_reach)
     part = np.repeat(np.arange(len(models)), [len(m.bodies) for m in models])
     for i, j in [*((face.a, face.b) for face in found.interfaces), *(miss.bodies for miss in found.not_made)]:
         p, q = int(part[i]), int(part[j])
@@ -158,6 +158,43 @@ def _agreed(models: Sequence[Model], whole: Model) -> None:
             )
             hint = "say it with joint = 0.6 or a JointLaw, in a file with [[rules]]"
             raise InputError(msg, where="merge", hint=hint)
+
+
+def _as_before(models: Sequence[Model], whole: Model) -> None:
+    """Refuse a tolerance of one part that closes gaps of another.
+
+    Raises
+    ------
+    InputError
+    """
+    pairs, first = _closed(whole), 0
+    for number, model in enumerate(models, 1):
+        last = first + len(model.bodies)
+        own = {(first + a, first + b) for a, b in _closed(model)}
+        new = sorted((a, b) for a, b in pairs - own if first <= a < last and first <= b < last)
+        if new:
+            a, b = (whole.bodies[k].name for k in new[0])
+            more = f", and {len(new) - 1} more pairs" if len(new) > 1 else ""
+            msg = (
+                f"'{a}' and '{b}' of part {number} do not touch in it and would in the whole{more}: another part has a "
+                f"gap_tolerance of {whole.gap_tolerance:g} m"
+            )
+            hint = "give all parts the same gap_tolerance, no larger than the inaccuracy of the drawing"
+            raise InputError(msg, where="merge", hint=hint)
+        first = last
+
+
+def _closed(model: Model) -> set[tuple[int, int]]:
+    """Return the pairs of bodies that touch at a face without an initial gap."""
+    return {(face.a, face.b) for face in _detected(model).interfaces if not np.any(face.gap)}
+
+
+def _detected(model: Model, reach: float | None = None) -> Detection:
+    """Return the faces at which bodies of a model touch, within its tolerance."""
+    tolerance = model.gap_tolerance if model.gap_tolerance is not None else 1e-6 * model.size
+    if model.dim == 2:
+        return detect_interfaces(model.outlines, tolerance=tolerance, reach=reach)
+    return detect_patches(model.polyhedra, tolerance=tolerance, reach=reach)
 
 
 def _different(names: list[str], what: str) -> None:
