@@ -43,7 +43,8 @@ def test_a_gap_of_a_part_stays_or_is_refused(
     parts = [pair(gap, other, "a", 0.0, space=space), pair(0.0, tolerance, "b", 20.0, space=space)]
     parts = parts if first else parts[::-1]
     if gap < tolerance * (1 - 1e-6):
-        with pytest.raises(concio.InputError, match="'a-b0' and 'a-b1' of part [12] do not touch in it") as caught:
+        refused = r"'a-b0' and 'a-b1' of part [12] do not touch in it"
+        with pytest.raises(concio.InputError, match=refused) as caught:
             concio.merge(*parts)
         assert f"{tolerance:g} m" in str(caught.value)
         return
