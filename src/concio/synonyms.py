@@ -47,6 +47,8 @@ SAME: Mapping[str, tuple[str, ...]] = {
     "value": ("magnitude", "valore"),
     "displacement": ("settlement", "cedimento", "spostamento"),
     "engine": ("linear_solver", "backend"),
+    "blocks_file": ("drawing_file", "dxf", "dxf_file", "file_of_blocks"),
+    "solids_file": ("ifc_file", "mesh_file", "obj_file", "stl_file"),
 }  # fmt: skip
 """The other words of each name, in lower case."""
 
