@@ -71,6 +71,7 @@ def test_an_assessment_of_two_structures_is_that_of_each(
     assert ways == pytest.approx([min(least)], rel=1e-12)
 
 
+@pytest.mark.long
 @settings(max_examples=sample(4, 12, 40), deadline=None)
 @given(st.floats(-3, 3), st.booleans(), st.sampled_from([0.3, 40.0, 1e4]), st.integers(1, 6))
 def test_a_section_beside_any_other_structure_stays_a_section(size: float, first: bool, gap: float, many: int) -> None:

@@ -91,6 +91,7 @@ def test_a_study_says_so_of_its_runs(outputs: str, tmp_path: Path) -> None:
         assert (code, found["outcome"]) == ((4, "incomplete") if light else (0, "holds"))
 
 
+@pytest.mark.long
 def test_an_assessment_says_so_in_both_languages() -> None:
     wall = overturning()
     light = concio.Body("pebble", [(0.2, 6.0), (0.22, 6.0), (0.22, 6.02), (0.2, 6.02)], kind="rigid", material="dust")

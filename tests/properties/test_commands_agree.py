@@ -129,6 +129,7 @@ def test_push_starts_where_statics_says_that_the_dead_load_stands(name: str, tmp
     assert (found["outcome"] == FAILS) == (dead == FAILS), found
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", spread(list(MODELS), 0, 6))
 def test_every_command_carries_the_same_list_of_what_is_odd(name: str, tmp_path: Path) -> None:
     text = MODELS[name][0].replace("friction = 0.", "friction = 3.", 1)

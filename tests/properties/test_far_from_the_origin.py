@@ -76,6 +76,7 @@ def test_a_push_far_from_the_origin_is_that_near_it(dim: int) -> None:
     np.testing.assert_allclose([e.at for e in far.events], [np.array(e.at) + shift for e in near.events], atol=1e-6)
 
 
+@pytest.mark.long
 def test_a_motion_far_from_the_origin_is_that_near_it_and_goes_on() -> None:
     wall, shift = overturning(2), np.array(GRID)
     top = concio.ControlPoint("c2", (0.0, 6.0))

@@ -85,6 +85,7 @@ def model(dim, bodies, kind, law, horizontal=0.0, weight=20.0):
     )  # fmt: skip
 
 
+@pytest.mark.long
 @few
 @given(
     st.sampled_from([2, 2, 2, 3]), st.sampled_from(["rigid", "elastic"]), st.sampled_from(list(LAWS)),

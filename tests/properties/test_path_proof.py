@@ -121,6 +121,7 @@ MUTANTS = {
 }  # fmt: skip
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("mutant", MUTANTS)
 def test_a_path_that_interpolates_wrongly_is_not_certified(mutant, monkeypatch):
     rng = np.random.default_rng(7)

@@ -88,6 +88,7 @@ def events_of(path, *, without=("other", "other ground")):
     return [(e.stage, e.kind, e.bodies, e.at) for e in path.events if not set(e.bodies) & set(without)]
 
 
+@pytest.mark.long
 @few
 @given(
     st.sampled_from(["rigid", "elastic"]), st.sampled_from(list(LAWS)), st.floats(-3, 2), st.floats(-6, 6),
@@ -195,6 +196,7 @@ def test_states_come_apart_and_together_again(dim, seed):
     assert whole.work == 3.0
 
 
+@pytest.mark.long
 def test_the_first_part_to_end_ends_the_path():
     """A column of 1.3 x 4 tips at 0.325, the stack holds up to 0.6."""
     ends = {}

@@ -163,6 +163,7 @@ def test_a_path_goes_on_with_the_ties_that_are_left(seed, method):
     assert end.certificate.certified
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", SEEDS)
 def test_under_the_motion_of_a_point_the_load_falls_and_the_path_goes_on(seed):
     """Where the tie lets go the point stays: friction is all that is left."""

@@ -95,6 +95,7 @@ def test_a_path_that_carries_its_loads_has_none() -> None:
     assert concio.run_path(pillar, [STAGES[0], concio.Stage("push", {"live": 0.1})]).sensitivity() is None
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("language", "words"), first(1, [
         ("it", "termina con un collasso al moltiplicatore 0,25"),
         ("en", "ends in a collapse at the load factor 0.25"),

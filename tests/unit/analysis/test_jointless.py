@@ -96,6 +96,7 @@ def test_a_missing_roller_is_a_mechanism(stone: bool) -> None:
     assert set(suitable_figures(result)) == {"model", "mechanism"}
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("blank_figures")
 @pytest.mark.parametrize("stone", [False, True])
 def test_files_figures_and_tables(stone: bool, tmp_path: Path) -> None:

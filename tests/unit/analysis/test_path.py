@@ -62,6 +62,7 @@ def test_events_are_named(exact):
         assert event.bodies[0] in str(event)
 
 
+@pytest.mark.long
 def test_steps_converge_to_the_exact_path(small, exact):
     errors = []
     for n in (4, 16):

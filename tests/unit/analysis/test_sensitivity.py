@@ -63,6 +63,7 @@ def test_walls_that_slide_and_tip(friction: float, length: float, cohesion: floa
                  compressive_strength=500.0))  # fmt: skip
 
 
+@pytest.mark.long
 def test_an_arch_under_a_load_off_its_crown() -> None:
     arch = concio.arch(span=3.0, ring=0.4, voussoirs=9, friction=0.8, crown_load=2.0, unit_weight=25, block="rigid")
     side = concio.Load("point", (0.0, -3.0), bodies=(arch.free_bodies[2].name,),

@@ -128,6 +128,7 @@ def pillars(heights: dict[str, float], modulus: float, deep: int = 2) -> concio.
     return concio.Model((ground, *blocks), stone, {"joint": concio.JointLaw(0.6)}, loads=loads)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("deep", [2, 3])
 @pytest.mark.parametrize("first", ["tall", "low"])
 def test_the_block_that_settles_most_is_named_with_what_it_depends_on(deep: int, first: str) -> None:

@@ -238,6 +238,7 @@ def written(tmp_path: Path, more: str = "") -> Path:
     return path
 
 
+@pytest.mark.long
 def test_the_command_prints_one_object_and_leaves_with_the_verdict(tmp_path: Path) -> None:
     path = written(tmp_path)
     options = ("--step", "0.5 m", "--fine", "0.1 m", "--worst", "1", "--checked", "3", "--no-sensitivity")
@@ -332,6 +333,7 @@ def test_a_study_varies_ring_and_fill_with_the_bridge_as_its_model(tmp_path: Pat
     assert acting == {"dead": "constant", "fill": "constant", "live": "multiplied"}
 
 
+@pytest.mark.long
 def test_brackets_are_at_positions_that_are_least_in_their_neighbourhood() -> None:
     found = concio.assess_bridge(small(), step=0.15, fine=0.05, worst=5, checked=0, sensitivity=False)
     curve = [(s.position, s.multiplier) for s in found.standings]
@@ -341,6 +343,7 @@ def test_brackets_are_at_positions_that_are_least_in_their_neighbourhood() -> No
     assert len(found.brackets) == 2  # the mirror images of one
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("axle", "outcome"), [(100.0, "holds"), (400.0, "fails")])
 def test_run_and_bridge_give_one_answer(axle: float, outcome: str, tmp_path: Path) -> None:
     path = written(tmp_path)

@@ -134,6 +134,7 @@ def test_prandtls_strip_footing_is_enclosed():
     assert exact < high.multiplier < 1.1 * exact
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("case", range(sample(1, 4)))
 def test_stresses_never_carry_more_than_a_mechanism_allows(case):
     rng = np.random.default_rng(case)

@@ -48,6 +48,7 @@ def test_blocks_and_continuum_are_printed_and_drawn_side_by_side(wall, tmp_path)
     assert told["halving"]["times_smaller"] == [1, 2]
 
 
+@pytest.mark.long
 def test_json_holds_what_is_said_and_python_says_the_same(wall):
     code, out, err = run("continuum", wall, "--json", "--no-elastic", "--group", "live", "--mesh-size", "40 cm")
     assert (code, err) == (0, "")

@@ -39,6 +39,7 @@ def test_weights_are_multiplied_beside_a_live_load_that_is_constant(way: int, tm
     assert roles == {"dead": "constant", "live": "constant", "weights": "multiplied"}
 
 
+@pytest.mark.long
 @settings(max_examples=sample(2, 6, 20), deadline=None)
 @given(lean=st.floats(-0.15, 0.1), share=st.one_of(st.floats(0.3, 0.97), st.floats(1.03, 3.0)))
 def test_a_growing_load_that_ends_below_the_multiplier_asked_for_has_not_shown_it(

@@ -132,6 +132,7 @@ def test_a_model_without_a_movement_says_what_to_state(tmp_path: Path) -> None:
     assert "give a [[supports]] entry a displacement or a rotation" in err
 
 
+@pytest.mark.long
 def test_loads_that_are_not_carried_leave_no_movement(tmp_path: Path) -> None:
     lifts = '[[loads]]\nkind = "point"\nvalue = [0, 30]\nbodies = ["block"]\nat = [1, 0.5]\ngroup = "live"\n'
     text = SQUEEZED.replace("[[supports]]", lifts + "[[supports]]")

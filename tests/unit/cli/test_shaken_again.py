@@ -59,6 +59,7 @@ def shaken(path: Path, *options: object) -> dict[str, Any]:
     return found
 
 
+@pytest.mark.long
 @few
 @given(friction=st.floats(0.3, 0.9), speed=st.floats(0.2, 0.7), share=st.floats(0.1, 0.8))
 def test_a_block_that_is_thrown_slides_as_far_in_two_runs_as_in_one(
@@ -74,6 +75,7 @@ def test_a_block_that_is_thrown_slides_as_far_in_two_runs_as_in_one(
     assert any("velocities of the file" in note for note in found["verdict"]["attention"])
 
 
+@pytest.mark.long
 @few
 @given(data=st.data())
 def test_a_motion_goes_on_with_its_own_blocks_alone(

@@ -243,6 +243,7 @@ def test_a_law_that_crushes_is_refused_at_a_corner_with_the_reason() -> None:
     assert all("has a compressive strength, and a corner or an edge has no area" in m.sentence for m in found.not_made)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("space", [False, True])
 @pytest.mark.usefixtures("blank_figures")
 def test_results_with_contacts_at_corners_are_written_and_read(space: bool, tmp_path) -> None:

@@ -183,6 +183,7 @@ value = [0, -1]
 """
 
 
+@pytest.mark.long
 def test_model_files_hold_holes(tmp_path):
     path = tmp_path / "f.toml"
     path.write_text(TEXT)

@@ -80,6 +80,7 @@ def test_joints_and_loads_of_a_part_are_those_it_had(models: list[concio.Model],
                     assert (whole.laws[made.law], made.gap) == (part.laws[own.law], own.gap)
 
 
+@pytest.mark.long
 @given(st.floats(0.1, 0.45), st.floats(0.1, 0.45))
 def test_a_part_slides_at_its_own_friction_beside_another(one: float, two: float) -> None:
     """tan(phi) of each: the least of both, whatever their order."""

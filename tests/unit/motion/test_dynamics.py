@@ -138,6 +138,7 @@ def test_a_motion_in_two_runs_is_that_of_one():
     assert second.verdict.unchecked == ()
 
 
+@pytest.mark.long
 def test_a_record_that_is_over_before_the_motion_goes_on_is_not_withstood():
     """1 g for 0.3 s overturns the block; put on 0.2 s after its end nothing of it acts, and no verdict may say so."""
     strong = concio.Record(np.r_[0.0, 1.0, 1.0, 0.0] * G, 0.1)
@@ -202,6 +203,7 @@ def test_energy_balance_of_a_rocking_or_sliding_block_whatever_its_joint(law, op
     assert 0.1 < rocks < 0.16 if height > 1 else rocks < 0.01
 
 
+@pytest.mark.long
 def test_a_crushing_joint_settles_and_carries_the_block_on():
     """After 0.6 s of rocking the block has sunk in by millimetres at its corners and stands on them."""
     law = concio.JointLaw(1.0, compressive_strength=120.0)

@@ -63,6 +63,7 @@ def test_a_block_on_a_smooth_floor_comes_to_rest_where_its_tie_holds_it():
     assert "not for hard ones" in found.verdict.answer
 
 
+@pytest.mark.long
 def test_an_elastic_block_comes_to_rest_as_its_load_step_has_it():
     model = block(concio.Elastic(E=1e4, nu=0.2, unit_weight=UNIT), 0.1, friction=0.6)
     step = concio.solve(model)

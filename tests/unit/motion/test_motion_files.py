@@ -104,6 +104,7 @@ def test_vtu_series_has_the_bodies_where_they_stand(tmp_path, pushed):
     assert all(p.stat().st_size > 500 for p in written[1:])
 
 
+@pytest.mark.long
 def test_a_film_and_a_frame(tmp_path, pushed, shaken):
     from PIL import Image
 

@@ -366,6 +366,7 @@ def test_a_block_falls_by_the_initial_gap_of_its_joint_however_thin_the_ground_i
     assert found.certificate <= 1e-9
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("dim", [2, 3])
 def test_an_initial_gap_elsewhere_changes_nothing_here(dim):
     """Bodies far away whose joints begin open by more than a block is thick fall; the pillar is shaken as without."""

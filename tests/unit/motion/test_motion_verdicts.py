@@ -55,6 +55,7 @@ def shaken(path, *options):
     return code, json.loads(out)
 
 
+@pytest.mark.long
 def test_a_block_that_slides_off_its_shelf_has_fallen(tmp_path):
     path = file_of(tmp_path, LOW, friction=0.2, end=0.4)
     code, told = shaken(path, "--pulse", "rectangular,-1 g,0.5 s", "--duration", "1.3 s")
@@ -62,6 +63,7 @@ def test_a_block_that_slides_off_its_shelf_has_fallen(tmp_path):
     assert "sunk" in told["sentence"] or "turned by" in told["sentence"]
 
 
+@pytest.mark.long
 def test_a_block_between_walls_that_nothing_presses_does_not_stand_and_falls():
     walls = [box("left", -1.0, 0.0, -0.5, 1.5, kind="fixed"), box("right", 1.0, 2.0, -0.5, 1.5, kind="fixed")]
     blocks = [box(f"b{k}", 0.5 * k, 0.5 * k + 0.5, 0.0, 1.0, kind="rigid", material="stone") for k in (0, 1)]

@@ -49,6 +49,7 @@ def test_a_fast_block_in_the_plane_does_not_pass_through_a_thin_floor():
     assert found.end.centre[1, 1] == pytest.approx(0.1, abs=1e-4)
 
 
+@pytest.mark.long
 def test_what_stands_apart_is_met_where_it_stands():
     """Two structures: a block thrown at another one, which is thinner than what it moves in a step."""
     model = blocks(((-0.3, -0.3, 0.0), (-0.29, 0.3, 0.6)), ((-3.0, -0.1, 0.3), (-2.8, 0.1, 0.5)))

@@ -268,6 +268,7 @@ def test_blocks_that_could_all_slide_part():
     assert curve.multiplier[1:] == pytest.approx(0.6, abs=3e-6)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("E", [3e5, 1e7][: sample(1, 2)])
 @pytest.mark.parametrize("elastic", first(1, [("pier", "slab"), ("pier",), ("slab",)], single=True))
 def test_an_elastic_slab_that_leans_on_a_corner_stands_and_is_pushed_as_a_rigid_one(elastic: tuple[str, ...], E: float):

@@ -93,6 +93,7 @@ def test_a_block_pushed_askew_turns_over_the_edge_that_gives_first(seed):
     assert found.peak == pytest.approx(min(A / way[0], B / way[1]) / H, rel=1e-4)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("way", [(1, 1), (-1, 1)])
 def test_a_square_block_pushed_along_its_diagonal_turns_over_its_corner(way):
     """Past the peak to the end: sideways it stands on a corner like a pencil on its tip."""

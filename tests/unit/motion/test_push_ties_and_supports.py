@@ -57,6 +57,7 @@ def test_a_support_that_the_growing_load_moves_is_refused():
         concio.push(pillar(supports=(support,), loads=(live,)))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("side", "toe"), first(2, [(None, 0.25), (-1.0, 0.15), (1.0, 0.25), ((-2.0, 0.0), 0.15)]))
 def test_the_side_pushed_to_is_obeyed_where_a_live_group_grows(side, toe):
     """The centroid of the leaning pillar is 0.25 from its right toe, 0.15 from its left one, 0.8 above both."""

@@ -96,6 +96,7 @@ def test_vertical_bending_without_a_load_on_top_opens_the_highest_joint() -> Non
     assert worst.multiplier == pytest.approx(2 * 0.5 / (4.0 * 7 / 8))
 
 
+@pytest.mark.long
 def test_thirty_courses_do_not_exceed_the_monolithic_wall() -> None:
     found = [weakest(concio.assess(overturning(n), site=site(), direction="left", levels=["SLD"])) for n in (1, 3, 30)]
     alpha = [m.multiplier for m in found]

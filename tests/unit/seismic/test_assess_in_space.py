@@ -131,6 +131,7 @@ def test_report_in_space() -> None:
         assert "thickness modelled" not in text
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("model", "way", "end"), [(overturning(2), "left", 0.603560), (bending(8), "right", None)]
 )

@@ -46,6 +46,7 @@ def test_what_is_less_safe_than_the_code_asks_for_attention(given: dict[str, flo
     assert all(line in found.verdict.attention for line in own)
 
 
+@pytest.mark.long
 def test_decisions_stand_in_the_report_with_their_reasons_in_its_language(tmp_path: Path) -> None:
     found = concio.assess(overturning(), site=site(), direction="left", q=1.5, participation=0.5, confidence=1.1)
     head = Head(reasons={"q": "carichi verticali elevati", "participation": "scelta di prova"})

@@ -36,7 +36,7 @@ def slides(bodies: tuple[Body, ...], law: JointLaw, way: str) -> LocalMechanism:
 
 
 @pytest.mark.parametrize("strength", [None, 600.0])
-@pytest.mark.parametrize("seed", range(sample(4, 24)))
+@pytest.mark.parametrize("seed", range(sample(1, 24)))
 def test_a_block_slides_until_its_resultant_comes_to_the_edge_of_the_wall(seed: int, strength: float | None) -> None:
     """A low block on a wall, flush with it, set back or beyond it: H = mu W acts at half of its height.
 
@@ -62,7 +62,7 @@ def test_a_block_slides_until_its_resultant_comes_to_the_edge_of_the_wall(seed: 
     assert own.followed.end == pytest.approx(side * (edge - resultant) - crushed, abs=1e-5)
 
 
-@pytest.mark.parametrize("seed", range(sample(2, 10)))
+@pytest.mark.parametrize("seed", range(sample(1, 10)))
 def test_the_order_of_the_blocks_changes_no_assessment(seed: int) -> None:
     """A wall of courses that slide on each other, with floors and a tie: some of its curves end at an edge."""
     rng = np.random.default_rng([45, seed])
@@ -123,6 +123,7 @@ def test_no_part_that_is_named_slides_worse_than_what_was_told(seed: int) -> Non
     assert named.zeta >= alone.zeta * (1 - 1e-6)
 
 
+@pytest.mark.long
 def test_the_verdict_says_that_the_least_parts_were_followed_also_where_others_met_them_first() -> None:
     """A small block at an edge slides off after 4 cm, a large one beside it after 44: each part was sought."""
     sizes = {"ground": (-6.0, 6.0, -0.5, 0.0), "low": (-1.0, 1.0, 0.0, 0.5), "wide": (-0.9, 0.3, 0.5, 0.9)}

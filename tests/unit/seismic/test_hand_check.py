@@ -37,6 +37,7 @@ def agreement(model: Model, **more: object) -> float:
     return max(check.difference for check in found.hand_checks)
 
 
+@pytest.mark.long
 @settings(max_examples=sample(3, 8, 20), deadline=None)
 @given(
     st.integers(1, 4), st.floats(2.0, 8.0), st.floats(0.3, 0.9), st.floats(0.05, 0.8),
@@ -128,6 +129,7 @@ def test_what_does_not_agree_is_left_open(share: float) -> None:
     assert any("virtual work" in line for line in other.verdict.unchecked)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("language", ["en", "it"])
 def test_the_annex_holds_what_the_code_asks_for(language: str) -> None:
     found = concio.assess(overturning(3), site=site(), direction="left")

@@ -138,6 +138,7 @@ def test_a_linear_check_that_is_met_decides_only_where_the_author_accepts_it() -
     assert not strong.decided_by(strong.checks[0])
 
 
+@pytest.mark.long
 def test_revision_and_date_have_a_place_where_they_are_not_given() -> None:
     found = concio.assess(overturning(2), site=site(), direction="left", levels=["SLD"])
     for head, cells in ((Head(), ["_" * 16] * 2), (Head(revision="B", date="1 May"), ["B", "1 May"])):
@@ -165,6 +166,7 @@ def test_what_was_covered_is_counted_and_named() -> None:
     assert found.summary()["covered"][0]["kind"] == "whole"
 
 
+@pytest.mark.long
 def test_the_report_as_docx_holds_its_headings_tables_and_pictures(tmp_path: Path) -> None:
     docx = pytest.importorskip("docx")
     found = concio.assess(overturning(2), site=site(), direction="left")

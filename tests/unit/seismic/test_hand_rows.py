@@ -11,6 +11,7 @@ from samples import first
 from seismic_walls import site
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("language", "stands"),
     first(1, [("it", "attrito, ciò che resta fermo / b01"), ("en", "friction, what stands / b01")]),

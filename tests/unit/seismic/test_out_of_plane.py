@@ -197,6 +197,7 @@ def test_the_least_of_plane_and_strips_decides_and_each_is_reported() -> None:
     assert sum("ratio of accelerations" in line for line in found.verdict.limits) <= 1
 
 
+@pytest.mark.long
 def test_left_to_the_author_or_pushed_by_a_group_it_is_not_searched() -> None:
     plain = facade(window=False, rows=2)
     assert not assessed(plain, elsewhere=["out of plane"]).strips

@@ -168,6 +168,7 @@ def test_bonded_blocks_of_matching_meshes_are_one_block(dim: int, cuts: list[flo
     assert count > len(nodes)  # every node, those at the cuts twice
 
 
+@pytest.mark.long
 def test_a_strength_that_is_not_reached_changes_no_force() -> None:
     """Where several blocks meet forces are not unique: the least are taken, and least is nothing, not the strength."""
     panels = [

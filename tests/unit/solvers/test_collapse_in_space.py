@@ -63,6 +63,7 @@ def test_a_toe_that_crushes() -> None:
     assert found.velocity[2] < 0
 
 
+@pytest.mark.long
 def test_pressure_over_many_points_is_spread_in_load_steps_and_free_in_bounds() -> None:
     """Torsion of a square joint, side a: 0.382598 mu N a under uniform pressure, mu N a / sqrt(2) at its corners."""
     ground = Polyhedron.box("ground", (-5, -5, -1), (5, 5, 0), kind="fixed")

@@ -144,6 +144,7 @@ def test_block_on_an_incline_accelerates_as_galileo_says() -> None:
                                rtol=1e-8, atol=1e-8)  # fmt: skip
 
 
+@pytest.mark.long
 def test_wall_moves_away_and_its_proof_stands_by_itself() -> None:
     problem, ended = moving_wall()
     a, u, t_n, t_t = ended.acceleration, ended.displacement, ended.normal_force, ended.friction_force[:, 0]

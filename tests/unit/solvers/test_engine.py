@@ -151,6 +151,7 @@ def test_progress_is_told_and_can_cancel():
     assert len(calls) == 3
 
 
+@pytest.mark.long
 def test_jammed_panel_without_base():
     """Hung between walls by friction: 3 x 6 stands at mu = 1; without friction it falls.
 

@@ -260,6 +260,7 @@ def test_records(method: str) -> None:
         assert solution.certificate.worst <= 10 * min(history)
 
 
+@pytest.mark.long
 def test_jammed_arch_between_walls() -> None:
     problem = wall(3, 6, mu=1.0, base=False, sides=True, top=1.0)
     answers = [find(name)(problem) for name in ("lagrange", "simo-laursen", "admm")]

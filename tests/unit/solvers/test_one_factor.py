@@ -25,6 +25,7 @@ def shaken(model: concio.Model) -> concio.DynamicsResult:
     return concio.dynamics(model, ground, duration=0.03, step=2e-3, stop_overturned=False)
 
 
+@pytest.mark.long
 def test_a_wall_that_slides_moves_as_with_factors_of_every_round(monkeypatch):
     model = wall(7, 14)
     one = shaken(model)

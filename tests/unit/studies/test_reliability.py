@@ -84,6 +84,7 @@ def test_the_probability_is_that_of_a_sample_where_the_limit_state_is_plane() ->
     assert found.probability == pytest.approx(share, abs=1e-4)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("radius", [0.05, 0.005])
 def test_the_nearest_point_of_a_sharp_surface(radius: float) -> None:
     """A needle that fails: the steps of Hasofer and Lind go back and forth beside it, the programmes end at it."""

@@ -138,6 +138,7 @@ def test_runs_have_seeds_of_their_own_that_the_size_does_not_change() -> None:
     assert len(set(many.values("drawn"))) > 40
 
 
+@pytest.mark.long
 def test_keys_of_a_model_file_take_the_values(tmp_path: Path) -> None:
     path = tmp_path / "arch.toml"
     path.write_text(ARCH)
@@ -418,6 +419,7 @@ def test_problems_of_salib_go_both_ways() -> None:
         variables_of_salib({**problem, "dists": ["unif", "logunif"]})
 
 
+@pytest.mark.long
 def test_samples_of_openturns_go_both_ways() -> None:
     ot = pytest.importorskip("openturns")
     made = draw(VARIABLES, "monte-carlo", 20)

@@ -50,6 +50,7 @@ def same_rows(one: concio.StudyResult, other: concio.StudyResult) -> bool:
     return told(one.rows) == told(other.rows)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("executor", [*EXECUTORS[:2], pytest.param("dask", marks=pytest.mark.long)])
 def test_rows_are_the_same_whatever_the_executor_and_a_run_that_raises_is_one(executor: str) -> None:
     found = study(raising, executor)
@@ -283,6 +284,7 @@ def test_a_scheduler_and_two_workers_of_their_own(scheduler: str) -> None:
     assert same_rows(by_address, found)
 
 
+@pytest.mark.long
 def test_the_command_line(tmp_path: Path) -> None:
     text = """
 [arch]

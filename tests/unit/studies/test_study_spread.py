@@ -150,6 +150,7 @@ def test_empty_and_single() -> None:
     assert Spread(np.array([math.inf])).quantile(0.5) == (math.inf, math.inf)
 
 
+@pytest.mark.long
 def test_half_of_the_pillars_cannot_carry_their_wind() -> None:
     """Multiplier 0.25 - H / 6.4 of the weight; from H = 1.6 on nothing is left to multiply."""
     found = pillar(["associated_multiplier", "load_margin"], 16)
@@ -164,6 +165,7 @@ def test_half_of_the_pillars_cannot_carry_their_wind() -> None:
     assert found.verdict.exit_code == 0
 
 
+@pytest.mark.long
 def test_what_multiplies_and_what_acts_is_told_and_chosen() -> None:
     both = pillar(["stands", "friction_factor", "load_margin"])
     assert both.values("stands").max() == 0.0

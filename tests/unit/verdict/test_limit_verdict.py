@@ -106,6 +106,7 @@ position = 3.0
 """
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("voussoirs", [8, 20])
 def test_what_only_joints_that_never_crush_carry_is_no_design_value(voussoirs: int) -> None:
     """A ring of 0.45 m holds by wedging at midspan; at 5 MPa its thrust is at most 9 MN, and bounds the load."""
@@ -125,6 +126,7 @@ def test_what_only_joints_that_never_crush_carry_is_no_design_value(voussoirs: i
     assert soft.design * 186.4 <= 2 * 5e3 * 0.45 * 4.0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("size", sample([1e3], [0.1, 1e3], [1e-3, 0.1, 10.0, 1e3]))
 @pytest.mark.parametrize("strength", [None, "5 MPa"])
 def test_what_stands_far_away_does_not_make_a_design_value(size: float, strength: str | None) -> None:
@@ -174,6 +176,7 @@ def test_the_question_says_what_is_multiplied_and_what_acts_constantly() -> None
     assert found.summary()["verdict"] == found.verdict.as_dict()
 
 
+@pytest.mark.long
 def test_a_dead_load_that_is_not_carried_stands_first(tmp_path: Path) -> None:
     file = tmp_path / "slot.toml"
     concio.save(slot(), file)
@@ -293,6 +296,7 @@ def test_a_load_s_times_as_large_has_one_s_th_of_the_multiplier_and_the_same_kN(
     assert two.associated.multiplier * s == pytest.approx(one.associated.multiplier, rel=1e-6)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(sample(1, 4, 12)))
 def test_names_of_groups_and_a_block_elsewhere_change_nothing(seed: int) -> None:
     model = walls(seed)

@@ -94,6 +94,7 @@ def test_spikes_have_octahedra_around_their_points():
     assert ((out * corner.mean(axis=1)).sum(axis=1) > 0).all()
 
 
+@pytest.mark.long
 def test_pages_and_figures_take_them():
     flat, solid = beam(), slab()
     assert len(view_data([flat], [""])["steps"]) == 1

@@ -169,6 +169,7 @@ def test_a_legend_explains_only_what_is_seen(monkeypatch: pytest.MonkeyPatch) ->
     assert words == {"axonometry": ["opens"], "plan": []}
 
 
+@pytest.mark.long
 def test_figures_of_a_model_in_space() -> None:
     for view in ("front", "axonometry"):
         axes = plot_space_model(tower(), view=view)

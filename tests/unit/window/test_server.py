@@ -491,6 +491,7 @@ def test_copies_that_a_killed_program_left_are_removed_and_nothing_else(file: Pa
         assert all(path.exists() for path in others)
 
 
+@pytest.mark.long
 def test_the_command_refuses_what_it_cannot_open(tmp_path: Path) -> None:
     (tmp_path / "a.exe").write_text("x", encoding="utf-8")
     for arguments_ in (["missing.toml"], ["--folder", "missing"], ["a.exe"]):
