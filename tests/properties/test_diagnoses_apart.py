@@ -48,6 +48,7 @@ def alone_of() -> concio.Diagnosis:
     return concio.diagnose(arch, cracks, moves, large=False)
 
 
+@pytest.mark.long
 @settings(max_examples=sample(1, 3, 8), deadline=None)
 @given(st.floats(-2, 2), st.booleans())
 def test_a_block_elsewhere_changes_no_motion_and_no_interval(size: float, first: bool) -> None:

@@ -19,6 +19,7 @@ walls = st.builds(running_bond, st.integers(1, 3), st.integers(1, 4), sizes)
 few = st.builds(running_bond, st.integers(1, 3), st.integers(1, 3), sizes)
 
 
+@pytest.mark.long
 @settings(max_examples=sample(8, 12, 25), deadline=None)
 @given(walls, st.floats(0.2, 0.9), st.sampled_from([1.0, -1.0]), st.floats(0.5, 4.0))
 def test_pushover_of_small_walls(assembly, mu, side, ratio):

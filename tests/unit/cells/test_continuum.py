@@ -201,6 +201,7 @@ def test_what_is_carried_without_end_and_what_is_not_carried_at_all():
     assert ((over[falls, 0] > 0.6) & (over[falls, 0] < 2.6)).all(), "what falls is over the door"
 
 
+@pytest.mark.long
 def test_ground_that_tears_apart_leaves_no_bonded_answer():
     halves = [
         concio.Body(n, [[x, -0.3], [x + 1.0, -0.3], [x + 1.0, 0], [x, 0]], kind="fixed")

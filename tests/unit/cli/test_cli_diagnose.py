@@ -81,6 +81,7 @@ def test_a_table_of_measurements_is_read_with_its_units(tabled: Path) -> None:
     assert survey.measurements[3].body == "v03"
 
 
+@pytest.mark.long
 def test_a_file_asks_for_what_python_asks_for() -> None:
     survey = read_survey(EXAMPLE)
     found = concio.diagnose(survey.model, survey.measurements, survey.candidates, **{**survey.options, "large": False})

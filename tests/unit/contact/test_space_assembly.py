@@ -222,6 +222,7 @@ def free_surface(assembly: Assembly, S: np.ndarray) -> np.ndarray:
     return f
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("element", first(1, ["T10", "H27"]))
 def test_quadratic_blocks_of_a_corner_meet_pair_by_pair(element: str) -> None:
     """Each node of the finer side enters hardly more than its own pair; with linear weights no method found an end."""

@@ -102,6 +102,7 @@ def plan_area(options: dict[str, object]) -> float:
     return float(shapely.union_all(boxes).area)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", first(7, sorted(WALLS, key=lambda name: name == "three wythes")))
 def test_bonds_fill_the_walls_and_lap(name: str) -> None:
     options, least, _ = WALLS[name]

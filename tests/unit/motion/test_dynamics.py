@@ -95,6 +95,7 @@ def test_a_pulse_too_weak_to_uplift_moves_nothing():
     assert found.largest_rotation[1] < 1e-4
 
 
+@pytest.mark.long
 def test_a_strong_pulse_overturns_and_the_motion_ends():
     pulse = concio.Pulse("half sine", 1.5 * G, 0.6)
     found = concio.dynamics(standing(), pulse, 4.0, 2e-3, gravity=G)
@@ -213,6 +214,7 @@ def test_a_crushing_joint_settles_and_carries_the_block_on():
     assert 1e-3 < found.end.memory.crushing.max() < 0.03
 
 
+@pytest.mark.long
 def test_a_tie_yields_and_lets_the_block_go_slower():
     """Without friction: m v^2 / 2 = F d - F^2 / 2 k stretches it, F^2 / 2 k comes back; the balance closes."""
     k, most, speed = 300.0, 4.0, 1.0
@@ -229,6 +231,7 @@ def test_a_tie_yields_and_lets_the_block_go_slower():
     assert found.energy.error < 1e-10
 
 
+@pytest.mark.long
 def test_a_tie_breaks_for_good():
     tie = concio.Tie("tie", "block", (-0.2, 0.2), "", (-2.2, 0.2), stiffness=100.0, break_elongation=0.02)
     mass, speed = 20.0 * 0.16 / G, 1.0

@@ -35,6 +35,7 @@ def rebound(restitution, step, height=0.2, scale=1.0):
     return float(y[found.steps.time > fall + 2 * step].max() / (height * scale))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("step", [1e-3, 4e-4][: sample(1, 2)])
 def test_what_returns_everything_returns_to_its_height_at_any_step(step):
     assert rebound(1.0, step) == pytest.approx(1.0, abs=1e-5)  # the highest point lies between two steps

@@ -99,6 +99,7 @@ def test_a_rocking_block_extruded_and_turned_is_that_of_the_plane():
     assert turn.T @ placed.spin[1] == pytest.approx([0.0, -state.spin[1], 0.0], abs=1e-11)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("vector", [(0.0, 0.0, 0.0), (0.3, 0.5, -0.8)])
 def test_impacts_of_a_rocking_block_extruded_and_turned_are_those_of_the_plane(vector):
     """Both ends of an edge move a block apart from the floor as the corner of the plane does, however it is turned."""

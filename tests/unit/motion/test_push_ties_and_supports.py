@@ -133,6 +133,7 @@ def test_a_block_without_weight_under_a_point_load_is_pushed():
     assert found.peak == pytest.approx(6.0, rel=1e-4)
 
 
+@pytest.mark.long
 def test_a_push_of_the_weights_has_the_multiplier_of_an_assessment():
     """A wall that carries a floor: half its width over the height of all weights, by hand, by push, by assess."""
     floor = 24.0

@@ -54,6 +54,7 @@ def same(state, other, error=1e-10):
     assert vector == pytest.approx([0.0, -state.rotation[1], 0.0], abs=error)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("law", first(2, [{"yield_force": 3.0}, {"break_elongation": 0.02}, {}, {"prestress": 2.0}]))
 def test_a_block_pulled_by_a_tie_is_that_of_the_plane(law):
     model = replace(
@@ -74,6 +75,7 @@ def test_a_rocking_block_held_by_a_tie_is_that_of_the_plane():
     assert abs(state.rotation[1]) > 1e-3
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("moves", first(1, [False, True]))
 def test_a_block_on_a_shaken_base_is_that_of_the_plane(moves):
     """As forces of inertia along and square to the floor, and on a floor that moves along itself.

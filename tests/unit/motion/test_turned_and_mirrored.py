@@ -51,6 +51,7 @@ def steps_of(kind):
     return {"flight": 20, "impacts": 60}[kind]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", ["flight", "impacts"])
 @pytest.mark.parametrize("seed", range(sample(1, 4)))
 def test_a_motion_that_is_turned_with_its_gravity_is_turned(kind, seed):

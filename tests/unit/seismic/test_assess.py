@@ -206,6 +206,7 @@ def test_a_joint_that_slides_is_checked_with_coulombs_flow() -> None:
     assert not fast.holds
 
 
+@pytest.mark.long
 def test_mechanisms_above_the_ground_meet_the_floor_spectrum() -> None:
     building = {"height": 6.0, "storeys": 2, "T1": 0.25, "xi": 10.0}
     found = concio.assess(overturning(6), site=site(building=building), direction="left",

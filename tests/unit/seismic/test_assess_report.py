@@ -46,6 +46,7 @@ def test_the_languages_have_the_same_keys_and_places(name: str) -> None:
         words_of("assessment_words", "fr")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("language", ["en", "it"])
 def test_report_holds_what_was_computed_and_never_verified_without_a_ratio(language: str) -> None:
     found = concio.assess(overturning(), site=site(), direction="left", control=("c1", (0.0, 6.0)))

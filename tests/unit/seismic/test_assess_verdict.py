@@ -138,6 +138,7 @@ def test_the_headline_is_the_least_zeta_at_the_ultimate_limit_state() -> None:
     assert "searches made: 3" in " ".join(found.verdict.limits)
 
 
+@pytest.mark.long
 @settings(max_examples=sample(2, 4, 12), deadline=None)
 @given(st.floats(2.0, 6.0), st.floats(0.25, 0.6), st.floats(2.0, 6.0), st.floats(0.25, 0.6))
 def test_structures_side_by_side_do_not_change_each_other(h1: float, t1: float, h2: float, t2: float) -> None:
@@ -248,6 +249,7 @@ def test_a_broken_tie_stays_broken_and_a_yielded_one_unloads() -> None:
     assert yielded.next_event([tie], np.array([0.012]), np.array([0.03])) == (0, 0.02, True)
 
 
+@pytest.mark.long
 def test_no_yield_force_helps_a_tie_that_breaks_first() -> None:
     found = tie_force(plain(*strip(), ties=(rod(longest=4e-4),)), "rod", site=site(), **ONE)
     assert math.isinf(found.force)

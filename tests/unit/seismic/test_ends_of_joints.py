@@ -47,6 +47,7 @@ def test_pairs_with_cohesion_are_all_needed() -> None:
     assert ends_of_joints(sticky, assembly.pairs).needed.all()
 
 
+@pytest.mark.long
 def test_all_pairs_have_the_same_limit_and_the_state_is_one_of_all() -> None:
     _, seek = searched(elastic_wall())
     found = seek.find()

@@ -242,6 +242,7 @@ def test_sources_of_validation_are_those_of_the_book_and_translated() -> None:
     assert all(it[f"source_{case}"] != text for case, text in own.items())
 
 
+@pytest.mark.long
 def test_what_was_assumed_is_told_in_the_language_of_the_report() -> None:
     found = concio.assess(overturning(), site=concio.Site({"SLV": {"a_g": 0.2, "F0": 2.4, "Tc": 0.3}}, assumed=(
         "soil", "nominal_life")), direction="left", levels=["SLV"])  # fmt: skip

@@ -17,6 +17,7 @@ from concio.problem.contact_problem import Laws
 from seismic_walls import overturning, site
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("friction", "slides"), [(0.8, False), (0.02, True)])
 def test_contacts_that_press_and_do_not_slide_stay(friction: float, slides: bool) -> None:
     """A wall that turns over keeps its toe; one that slides on all of its foot keeps nothing."""

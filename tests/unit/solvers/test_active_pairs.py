@@ -32,6 +32,7 @@ def test_a_motion_is_the_same_with_the_pairs_that_stand_apart(monkeypatch):
     assert part.end.rotation == pytest.approx(whole.end.rotation, abs=1e-10)
 
 
+@pytest.mark.long
 def test_rows_are_shared_by_problems_that_differ_in_loads_alone(monkeypatch):
     shared = []
     take = active_pairs.StepProblem.share_rows

@@ -54,6 +54,7 @@ def test_a_programme_without_an_answer_ends_early(seed: int) -> None:
     assert found is None
 
 
+@pytest.mark.long
 def test_motions_of_a_wall_are_certified_alike_below_its_bound() -> None:
     wall = concio.wall(length=2.0, height=1.25, block_size=(0.5, 0.25), friction=0.6, horizontal=1.0, block="rigid")
     assembly = concio.assemble(wall)

@@ -96,11 +96,13 @@ def test_three_dimensions(method: str) -> None:
     assert find(method)(problem, **SHORT.get(method, {})).status is Status.GAVE_UP
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("method", ALL)
 def test_wall_beyond_collapse_is_never_solved(method: str) -> None:
     assert find(method)(wall(2, 2, alpha=1.2), **SHORT.get(method, {})).status is Status.GAVE_UP
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("law", "why"),
     first(3, [

@@ -47,6 +47,7 @@ def test_resistance_over_load_both_lognormal_is_exact(of_r: float, of_s: float, 
         assert concio.reliability(state, [r, s]).beta == pytest.approx(wanted, abs=1e-6)
 
 
+@pytest.mark.long
 def test_a_curved_limit_state_on_which_whole_steps_go_to_and_fro() -> None:
     """a^3 + b^3 = 18: the distance of the curve from the means in standard deviations, sampled, is the index."""
     variables = [concio.variable("a", "normal", mean=10.0, sd=5.0), concio.variable("b", "normal", mean=9.9, sd=5.0)]

@@ -49,6 +49,7 @@ def test_minimum_of_two_uniforms(design: str) -> None:
     assert share.low < share.estimate < share.high
 
 
+@pytest.mark.long
 def test_sobol_indices_of_the_minimum() -> None:
     """First 0.113817 (mu), 0.761526 (s); total 0.238474, 0.886183."""
     found = concio.study(formula, VARIABLES, "multiplier", "saltelli", size=512).sensitivity("multiplier")

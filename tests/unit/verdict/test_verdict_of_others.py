@@ -63,6 +63,7 @@ def slot(rng: np.random.Generator) -> str:
                        friction=rng.uniform(0.3, 0.9))  # fmt: skip
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(sample(1, 8, 30)))
 def test_compare_says_what_run_says(seed: int, tmp_path: Path) -> None:
     path = tmp_path / "slot.toml"
