@@ -88,6 +88,11 @@ def shake(
         raise InputError(msg, where="--motion, --pulse", hint="keep one of them")
     notes: list[str] = []
     apart = None if record_step is None else _time(record_step, "--record-step")
+    if motion is transverse is vertical is None:
+        for option, text in (("--record-unit", record_unit), ("--record-step", record_step)):
+            if text is not None:
+                msg = "it is that of the records of --motion, --transverse and --vertical, and none is given"
+                raise InputError(msg, where=option, hint="give the record, or write it in [motion] of the file")
     given: dict[str, Signal] = {}
     for axis, record in records_by_axis(motion, transverse, vertical, model.dim, "--transverse"):
         if record is not None:

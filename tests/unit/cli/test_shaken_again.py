@@ -151,3 +151,13 @@ def test_bare_accelerations_and_velocities_are_refused_where_the_file_is_not_in_
         with pytest.raises(InputError, match="has no unit"):
             motion_table(data, "file", file_units(data, "file"))
         assert motion_table(data, "file") is not None
+
+
+@pytest.mark.parametrize(("option", "value"), [("--record-unit", "g"), ("--record-step", "10 ms")])
+def test_a_unit_of_no_record_is_refused(tmp_path, option, value):
+    """It was left aside: the record of the file kept its own."""
+    path = tmp_path / "low.toml"
+    path.write_text(file(["low"]) + '[motion]\npulse = { shape = "sine", amplitude = "0.1 g", length = "0.1 s" }\n')
+    code, _, err = run("shake", path, option, value, "--duration", "0.02 s")
+    assert code == 2
+    assert "none is given" in err

@@ -132,3 +132,52 @@ def test_a_file_too_large_for_a_record(tmp_path):
         file.truncate(300_000_000)
     with pytest.raises(concio.InputError, match="300 MB: that is not a record"):
         concio.read_record(path)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"unit": "m/s2"}, "the values are in g, and the unit m/s2 is given"),
+        ({"unit": "cm/s"}, "the values are in g, and the unit cm/s is given"),
+        ({"step": 0.02}, "DT = 0.01 s, and a step of 0.02 s is given"),
+    ],
+)
+def test_what_a_header_says_is_not_replaced_without_a_word(tmp_path, options, words):
+    """Accelerations in g were read as m/s2, or as velocities; a step of time was left aside."""
+    path = tmp_path / "record.at2"
+    path.write_text(AT2)
+    with pytest.raises(concio.InputError, match=words):
+        concio.read_record(path, **options)
+    assert concio.read_record(path, unit="g", step=0.01).values == pytest.approx(concio.read_record(path).values)
+
+
+def test_a_unit_is_given_where_the_header_names_none(tmp_path):
+    path = tmp_path / "record.at2"
+    path.write_text(AT2.replace("UNITS OF G", "SOME UNITS"))
+    assert concio.read_record(path, unit="m/s2").values.max() == pytest.approx(0.2)
+    with pytest.raises(concio.InputError, match="the name of the file says acceleration, and the unit cm is given"):
+        concio.read_record(path, unit="cm")
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("1 2 3\n4 5 6\n7 8 9\n10 1 1\n", "every line holds 3 numbers, the first of which run as times do"),
+        ("1 2 3\n5 5 6\n7 8 9\n", "every line holds 3 numbers: one record"),
+        ("0.00 1 2 3\n0.01 5 5 6\n0.03 7 8 9\n", "every line holds 4 numbers: one record"),
+        ("0.00 1 2 3 4 5 6\n0.01 5 5 6 1 2 3\n0.02 7 8 9 4 4 4\n0.03 1 2 3 4 5 6\n", "run as times do"),
+        ("3 0.01\n0.1\n0.2\n0.3\n", "row 2 of numbers holds 1, the first one 2"),
+    ],
+)
+def test_columns_are_not_read_one_after_the_other(tmp_path, text, words):
+    """Three components side by side were one record of three times the length, x, y and z by turns."""
+    path = tmp_path / "record.txt"
+    path.write_text(text)
+    with pytest.raises(concio.InputError, match=words):
+        concio.read_record(path, unit="m/s2", step=0.01)
+
+
+def test_values_of_one_record_may_stand_several_on_a_line(tmp_path):
+    path = tmp_path / "record.txt"
+    path.write_text("# five on a line\n0.1 0.3 0.2 0.1 0.5\n0.2 0.1 0.4 0.1 0.2\n0.3 0.2\n")
+    assert concio.read_record(path, unit="m/s2", step=0.01).duration == pytest.approx(0.11)

@@ -364,3 +364,31 @@ def test_steps_without_loads_are_measured_by_the_momentum_of_the_step():
     assert measures(reference, idle, idle, h) == pytest.approx((1.0, h / mass))
     acting = np.array([0.0, -20.0, 0.0])
     assert measures(reference, acting, x0, h) == pytest.approx((20.0, h * G))
+
+
+def test_records_that_begin_at_different_times_are_refused(tmp_path):
+    """Both began with the motion: the vertical one came two seconds too early."""
+    for name, begins in (("x.txt", 0.0), ("y.txt", 2.0)):
+        rows = [f"{begins + 0.01 * k} {v}" for k, v in enumerate((0.0, 1.0, -1.0, 0.0))]
+        (tmp_path / name).write_text("\n".join(rows))
+    records = {axis: concio.read_record(tmp_path / f"{axis}.txt", unit="m/s2") for axis in "xy"}
+    with pytest.raises(concio.InputError, match="begin at different times: 0 s along x, 2 s along y"):
+        concio.dynamics(standing(), records, 0.01)
+
+
+def test_a_motion_does_not_go_on_in_another_frame():
+    """A block that goes with its base slid 4 mm on ground that had stopped without a word, or was left behind."""
+    block, pulse = standing(width=1.2, height=0.3, friction=0.5), concio.Pulse("rectangular", 1.0, 0.2)
+    moving = concio.dynamics(block, pulse, 0.2, 5e-3, base="moving", gravity=G)
+    inertia = concio.dynamics(block, pulse, 0.2, 5e-3, gravity=G)
+    with pytest.raises(concio.InputError, match=r"moved at 0.19\d* m/s at the end of the earlier motion"):
+        concio.dynamics(block, pulse, 0.05, 5e-3, gravity=G, start=moving.end)
+    with pytest.raises(concio.InputError, match=r"the ground moves at 0\.2 m/s at 0\.2 s"):
+        concio.dynamics(block, pulse, 0.05, 5e-3, base="moving", gravity=G, start=inertia.end)
+    on = concio.dynamics(block, pulse, 0.05, 5e-3, base="moving", gravity=G, start=moving.end)
+    assert not on.notes
+    assert on.end.centre[1] - moving.end.centre[1] == pytest.approx([0.01, 0.0], abs=3e-4)
+    stopped = concio.dynamics(block, None, 0.05, 5e-3, base="moving", gravity=G, start=moving.end)
+    assert "moves at 0 m/s from there on" in stopped.notes[0]
+    again = concio.dynamics(block, concio.Pulse("sine", 1.0, 0.2), 0.05, 5e-3, gravity=G, start=inertia.end)
+    assert not again.notes

@@ -1,9 +1,12 @@
-"""A motion that goes on from the end of an earlier one: whether both are of the same bodies."""
+"""A motion that goes on from the end of an earlier one: whether both are of the same bodies on the same ground."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from concio.analysis.motion.ground_motion import Ground
+from concio.analysis.motion.state import MotionState
+from concio.contact.reference import Reference
 from concio.errors import InputError
 from concio.model.body import Body
 from concio.model.file.writing import dumps
@@ -12,6 +15,10 @@ from concio.model.polyhedron import Polyhedron
 
 SAME = 1e-6
 """Corners nearer than this share of the size of the model are the same."""
+
+
+SAME_SPEED = 1e-6
+"""Velocities of the ground that differ by less are the same [m/s]."""
 
 
 def goes_on(earlier: Model, model: Model, where: str) -> list[str]:
@@ -45,3 +52,33 @@ def _same(old: Body | Polyhedron, new: Body | Polyhedron, near: float) -> bool:
     if np.abs(old.vertices - new.vertices).max() > near:
         return False
     return not (isinstance(old, Body) and isinstance(new, Body)) or abs(old.thickness - new.thickness) <= near
+
+
+def check_ground(reference: Reference, state: MotionState, ground: Ground, base: str, step: float) -> list[str]:
+    """Return what is to be said of the ground where a motion goes on from an earlier one.
+
+    Velocities of a state are those of the earlier motion: seen from the ground with forces of inertia, and not with a
+    base that moves.
+
+    Raises
+    ------
+    InputError
+        The ground moved with a velocity in the earlier motion, and this one is seen from it, or vice versa.
+    """
+    fixed = [b for b, body in enumerate(reference.model.bodies) if body.kind == "fixed"]
+    if not fixed:
+        return []
+    before = state.velocity[fixed[0]]
+    times = state.time + step * np.linspace(-2.0, 2.0, 9)
+    now = ground.velocity(times[4:5])[0] if base == "moving" else np.zeros_like(before)
+    change = step * float(np.abs(ground.acceleration(times)).max()) if base == "moving" else 0.0
+    if ground.turning or float(np.abs(now - before).max()) <= 2.0 * change + SAME_SPEED:
+        return []
+    was, comes = (f"{float(np.linalg.norm(v)):.4g} m/s" for v in (before, now))
+    if base == "inertia":
+        msg = f"the ground moved at {was} at the end of the earlier motion, and this one is seen from the ground"
+        raise InputError(msg, where="base", hint='go on with base="moving", as the earlier motion')
+    if not before.any():
+        msg = f"the ground moves at {comes} at {state.time:g} s, and in the earlier motion the fixed bodies stood still"
+        raise InputError(msg, where="base", hint='go on with base="inertia", as the earlier motion')
+    return [f"the ground moved at {was} at the end of the earlier motion and moves at {comes} from there on"]

@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 
 from concio.analysis.entry_point import entry_point
+from concio.analysis.motion.continued import check_ground
 from concio.analysis.motion.dynamics_asked import check_base, check_length, check_masses, positive, step_asked, thrown
 from concio.analysis.motion.dynamics_result import DynamicsResult, Ending
 from concio.analysis.motion.ground_motion import Ground, Motion
@@ -221,6 +222,7 @@ class _Run:
                 msg = "the state to start from belongs to another model"
                 raise InputError(msg, hint="take the state of a motion of the same model")
             state = start
+            self.notes += check_ground(reference, state, self.ground, self.base, self.step)
         elif start == "equilibrium":
             structures, state = self._balanced(structures, state)
         elif start != "as described":

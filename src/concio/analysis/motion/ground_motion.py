@@ -77,8 +77,10 @@ class Ground:
                 where = "the plane" if dim == 2 else "space"
                 msg = f"there is no component '{name}' of a ground motion in {where}"
                 raise InputError(msg, hint=WHICH[dim])
-        turns = tuple(_signal(given.get(name)) for name in TURNS[dim])
-        return cls(tuple(_signal(given.get(name)) for name in AXES[dim]), float(scale), turns, pivot)
+        signals = {name: _signal(given.get(name)) for name in (*AXES[dim], *TURNS[dim])}
+        _refuse_other_origins(signals)
+        turns = tuple(signals[name] for name in TURNS[dim])
+        return cls(tuple(signals[name] for name in AXES[dim]), float(scale), turns, pivot)
 
     @property
     def turning(self) -> bool:
@@ -167,6 +169,11 @@ class Ground:
         zero = np.zeros(np.shape(time))
         return np.stack([zero if s is None else self.scale * s.acceleration(time) for s in self.components], axis=-1)
 
+    def velocity(self, time: Array) -> Array:
+        """Return the velocity at times (n,), shape (n, d) [m/s]."""
+        zero = np.zeros(np.shape(time))
+        return np.stack([zero if s is None else self.scale * s.velocity(time) for s in self.components], axis=-1)
+
     def displacement(self, time: Array) -> Array:
         """Return the displacement at times (n,), shape (n, d) [m]."""
         zero = np.zeros(np.shape(time))
@@ -179,6 +186,23 @@ class Ground:
                 first, last = getattr(signal, quantity)(np.array([start, end]))
                 mean[k] = self.scale * (last - first) / (end - start)
         return mean
+
+
+def _refuse_other_origins(signals: Mapping[str, Signal | None]) -> None:
+    """Refuse records whose first samples are at different times: each would begin with the motion.
+
+    Raises
+    ------
+    InputError
+        Two of them begin more than a sample apart.
+    """
+    records = {name: s for name, s in signals.items() if isinstance(s, Record)}
+    begins = [s.begins for s in records.values()]
+    if begins and max(begins) - min(begins) > 1.5 * max(s.step for s in records.values()):
+        told = ", ".join(f"{s.begins:.6g} s along {name}" for name, s in records.items())
+        msg = f"the records begin at different times: {told}"
+        hint = "let them begin at the same time: zeros before the later one, or cut the earlier one"
+        raise InputError(msg, where="motion", hint=hint)
 
 
 def _largest(signal: Signal) -> float:

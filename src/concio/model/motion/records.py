@@ -2,7 +2,7 @@
 
 An AT2 file has four lines of head, the fourth with the number of samples and their step, and values in units of g, any
 number of them on a line. In text files lines that do not begin with a number, and empty ones, are skipped; two columns
-are time and value, one column needs the step.
+are time and value, one column needs the step. Values of one column may stand several on a line.
 """
 
 from __future__ import annotations
@@ -37,6 +37,9 @@ LARGEST = 5.0
 
 UNEVEN = 1e-3
 """Share by which steps of time may differ."""
+
+COMPONENTS = (3, 4)
+"""Numbers on a line that are as likely three components, with or without a time, as values one after the other."""
 
 MOST_BYTES = 200_000_000
 """Size of a file from which on it is not a record of ground motion: days of samples."""
@@ -98,31 +101,44 @@ def read_record(path: Path | str, *, unit: str | None = None, step: float | None
     suffix = path.suffix.lower()
     head = _HEAD.search("\n".join(text.splitlines()[:6]))
     if suffix in PEER or (head is not None and unit is None and step is None):
-        values, step = _peer(text, head, where)
-        unit = unit or _unit_of_peer(text, suffix, where)
+        values, interval = _peer(text, head, where)
+        begins = 0.0
+        if step is not None and abs(step - interval) > UNEVEN * interval:
+            msg = f"the header says DT = {interval:g} s, and a step of {step:g} s is given"
+            raise InputError(msg, where=where, hint="leave the step out; a text beside it may have a column of times")
+        unit = _unit_of_peer(text, suffix, where, unit)
     else:
-        values, step = _columns(text, step, where)
+        values, interval, begins = _columns(text, step, where)
         if unit is None:
             msg = f"the text does not say its unit; its largest value is {float(np.abs(values).max()):.4g}"
             hint = "give the unit: --record-unit g, m/s2, cm/s2, m/s, m ...; in a file: unit = \"g\"; here: unit=\"g\""
             raise InputError(msg, where=where, hint=hint)
     quantity, size = UNITS[unit]
-    return Record(size * values, step, quantity, path.name)
+    return Record(size * values, interval, quantity, path.name, begins)
 
 
-def _unit_of_peer(text: str, suffix: str, where: str) -> str:
-    """Return the unit that the head of a PEER file names, or the usual one of its kind."""
+def _unit_of_peer(text: str, suffix: str, where: str, given: str | None) -> str:
+    """Return the unit that the head of a PEER file names, else the one that is given, or the usual one of its kind."""
     usual = PEER.get(suffix, "g")
     named = _UNITS.search("\n".join(text.splitlines()[:6]))
-    if named is None:
-        return usual
-    word = named.group(1).lower()
+    word = "" if named is None else named.group(1).lower()
     other = {"cm/s/s": "cm/s2", "cm/sec2": "cm/s2", "cm/s**2": "cm/s2", "m/s/s": "m/s2", "cm/sec": "cm/s"}
     unit = other.get(word, word)
-    if unit not in UNITS:
+    if unit not in UNITS and given is None:
+        if named is None:
+            return usual
         msg = f"the header names the unit '{named.group(1)}', which is not known"
         raise InputError(msg, where=where, hint="give the unit: one of " + ", ".join(UNITS))
-    if UNITS[unit][0] != UNITS[usual][0]:
+    if given is not None and given != unit:
+        if unit in UNITS and UNITS[unit] != UNITS[given]:
+            msg = f"the header says that the values are in {unit}, and the unit {given} is given"
+            hint = "leave the unit out; a file whose header is wrong needs another header"
+            raise InputError(msg, where=where, hint=hint)
+        if UNITS[given][0] != UNITS[usual][0]:
+            msg = f"the name of the file says {UNITS[usual][0]}, and the unit {given} is given"
+            raise InputError(msg, where=where, hint="leave the unit out, or give the file another name")
+        return given
+    if given is None and UNITS[unit][0] != UNITS[usual][0]:
         msg = f"the header says {UNITS[unit][0]} in {unit}, the name of the file {UNITS[usual][0]}"
         raise InputError(msg, where=where, hint="give the unit, or the file another name")
     return unit
@@ -162,8 +178,8 @@ def _peer(text: str, head: re.Match[str] | None, where: str) -> tuple[Array, flo
     return values, step
 
 
-def _columns(text: str, step: float | None, where: str) -> tuple[Array, float]:
-    """Return values and step of a text of one or two columns."""
+def _columns(text: str, step: float | None, where: str) -> tuple[Array, float, float]:
+    """Return values, step and first time of a text of one or two columns."""
     rows: list[list[float]] = []
     for number, line in enumerate(text.splitlines(), 1):
         if not _NUMBER.match(line):
@@ -188,10 +204,36 @@ def _columns(text: str, step: float | None, where: str) -> tuple[Array, float]:
     if step is None:
         msg = "the file has one column: the time between samples is not known"
         raise InputError(msg, where=where, hint="give it (step, or --record-step '0.01 s'), or a column of times")
-    return np.concatenate([np.array(r) for r in rows]), step
+    _refuse_components(rows, where)
+    return np.concatenate([np.array(r) for r in rows]), step, 0.0
 
 
-def _timed(rows: Array, where: str) -> tuple[Array, float]:
+def _refuse_components(rows: list[list[float]], where: str) -> None:
+    """Refuse lines that are not one series after the other: several components side by side, or a line of another kind.
+
+    Raises
+    ------
+    InputError
+        All lines hold three or four numbers, the first numbers of the lines run evenly as times do, or a line before
+        the last one holds another count.
+    """
+    width = len(rows[0])
+    for number, row in enumerate(rows[1:], 2):
+        if len(row) != width and not (number == len(rows) and len(row) < width):
+            msg = f"row {number} of numbers holds {len(row)}, the first one {width}"
+            raise InputError(msg, where=where, hint="put what stands before the values behind a #")
+    if width == 1:
+        return
+    first = np.diff([row[0] for row in rows])
+    evenly = len(first) > 2 and first[0] > 0 and bool(np.allclose(first, first[0], rtol=UNEVEN, atol=0.0))
+    if evenly or (width in COMPONENTS and len(rows) > 1 and len(rows[-1]) == width):
+        times = ", the first of which run as times do" if evenly else ""
+        msg = f"every line holds {width} numbers{times}: one record is read"
+        hint = "write a file for each component: time and value, or one value on a line"
+        raise InputError(msg, where=where, hint=hint)
+
+
+def _timed(rows: Array, where: str) -> tuple[Array, float, float]:
     time, values = rows.T
     step = np.diff(time)
     if len(step) == 0:
@@ -210,7 +252,7 @@ def _timed(rows: Array, where: str) -> tuple[Array, float]:
         gap = f"{step[k]:.6g} s between {time[k]:g} s and {time[k + 1]:g} s"
         msg = f"the record has a gap: {gap}, elsewhere {usual:.6g} s"
         raise InputError(msg, where=where, hint="fill it; samples must have a constant time step")
-    return values, float((time[-1] - time[0]) / len(step))
+    return values, float((time[-1] - time[0]) / len(step)), float(time[0])
 
 
 def _float(word: str, where: str) -> float:

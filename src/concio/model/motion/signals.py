@@ -58,6 +58,9 @@ class Record:
         Time between samples [s].
     quantity : {"acceleration", "velocity", "displacement"}
     name : str
+    begins : float
+        Time of the first sample as its file counts it [s]: the motion begins there. Components of one motion must have
+        one origin of time.
 
     Examples
     --------
@@ -74,6 +77,7 @@ class Record:
     step: float
     quantity: Quantity = "acceleration"
     name: str = "record"
+    begins: float = 0.0
 
     def __post_init__(self) -> None:
         where = f"record '{self.name}'"
