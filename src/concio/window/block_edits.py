@@ -10,6 +10,7 @@ import shapely
 from shapely.ops import split as cut
 
 from concio.errors import InputError
+from concio.window.own_units import points_in_file, units_of_text
 from concio.window.toml_edits import Patch, add_table, difference, literal, remove, set_value
 
 NEAR = 1e-7
@@ -27,7 +28,7 @@ def many_blocks(text: str, command: Mapping[str, Any]) -> tuple[Patch, str]:
     InputError
         There are none, or an outline is not a list of points.
     """
-    stones = [_ring(s) for s in command.get("stones", [])]
+    stones = [_ring(points_in_file(s, text)) for s in command.get("stones", [])]
     if not 0 < len(stones) <= MOST:
         msg = f"{len(stones)} stones"
         raise InputError(msg, hint="trace the picture first")
@@ -58,11 +59,12 @@ def merged(text: str, command: Mapping[str, Any]) -> tuple[Patch, str]:
     if len(names) < 2:
         msg = "one block alone cannot be merged"
         raise InputError(msg, hint="select two blocks or more")
-    whole = shapely.union_all([shapely.Polygon(_outline(blocks[k])) for k in numbers], grid_size=NEAR)
+    near = NEAR / units_of_text(text).length
+    whole = shapely.union_all([shapely.Polygon(_outline(blocks[k])) for k in numbers], grid_size=near)
     if not isinstance(whole, shapely.Polygon) or whole.interiors:
         msg = "these blocks do not touch along a side, or have a hole between them"
         raise InputError(msg, where=", ".join(names), hint="merge neighbours")
-    ring = _counter_clockwise(shapely.remove_repeated_points(whole, NEAR))
+    ring = _counter_clockwise(shapely.remove_repeated_points(whole, near))
     new = _with_outline(text, numbers[0], blocks[numbers[0]], ring)
     for k in sorted(numbers[1:], reverse=True):
         new = remove(new, ("blocks", k)).applied(new)
@@ -73,7 +75,7 @@ def split(text: str, command: Mapping[str, Any]) -> tuple[Patch, str]:
     """Return the patch that cuts a block along a line of points; neighbours get the new corners."""
     name = str(command.get("name"))
     (number,), blocks = _numbers(text, [name]), tomllib.loads(text)["blocks"]
-    line = shapely.LineString(_points(command.get("line"), 2))
+    line = shapely.LineString(_points(points_in_file(command.get("line"), text), 2))
     parts = [p for p in cut(shapely.Polygon(_outline(blocks[number])), line).geoms if p.area > NEAR]
     if len(parts) != 2:
         msg = f"the line does not cut block '{name}' in two"
@@ -88,15 +90,15 @@ def split(text: str, command: Mapping[str, Any]) -> tuple[Patch, str]:
 
 def corner(text: str, command: Mapping[str, Any]) -> tuple[Patch, str]:
     """Return the patch that moves a corner in every outline that has it."""
-    (start,), (end,) = _points([command.get("from")], 1), _points([command.get("to")], 1)
-    new, moved = text, 0
+    (start,), (end,) = (_points(points_in_file([command.get(key)], text), 1) for key in ("from", "to"))
+    new, moved, near = text, 0, NEAR / units_of_text(text).length
     for k, block in enumerate(tomllib.loads(text).get("blocks", [])):
         try:
             ring = _outline(block)
         except InputError:
             continue
-        if any(_near(p, start) for p in ring):
-            ring = [list(end) if _near(p, start) else p for p in ring]
+        if any(_near(p, start, near) for p in ring):
+            ring = [list(end) if _near(p, start, near) else p for p in ring]
             if not shapely.Polygon(ring).is_valid:
                 msg = f"block '{block.get('name')}' would cross itself"
                 raise InputError(msg, hint="move the corner less far")
@@ -107,8 +109,8 @@ def corner(text: str, command: Mapping[str, Any]) -> tuple[Patch, str]:
     return difference(text, new), "move a corner"
 
 
-def _near(p: Sequence[float], q: Sequence[float]) -> bool:
-    return max(abs(p[0] - q[0]), abs(p[1] - q[1])) <= NEAR
+def _near(p: Sequence[float], q: Sequence[float], near: float) -> bool:
+    return max(abs(p[0] - q[0]), abs(p[1] - q[1])) <= near
 
 
 def _numbers(text: str, names: Sequence[str]) -> list[int]:
@@ -139,7 +141,7 @@ def _ring(value: Any) -> list[list[float]]:
 def _points(value: Any, least: int) -> list[tuple[float, float]]:
     plain = isinstance(value, list) and len(value) >= least
     if not plain or not all(isinstance(p, list) and len(p) == 2 and all(_number(v) for v in p) for p in value):
-        msg = "points are not pairs of numbers in metres"
+        msg = "points are not pairs of numbers"
         raise InputError(msg, hint="change blocks with units or in space in the text")
     return [(float(x), float(y)) for x, y in value]
 

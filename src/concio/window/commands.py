@@ -9,6 +9,7 @@ from typing import Any
 
 from concio.errors import InputError
 from concio.window.block_edits import BLOCK_COMMANDS
+from concio.window.own_units import table_in_file, value_in_file
 from concio.window.toml_edits import Patch, add_table, difference, literal, remove, set_value
 from concio.window.toml_places import KeyPath
 
@@ -85,7 +86,10 @@ def written_value(text: str) -> Any:
 
 def _set(text: str, command: Command) -> tuple[Patch, str]:
     path = path_of(command.get("path"))
-    value = written_value(str(command["written"])) if "written" in command else value_of(command.get("value"))
+    if "written" in command:
+        value = written_value(str(command["written"]))
+    else:
+        value = value_in_file(value_of(command.get("value")), path, text)
     return set_value(text, path, value), f"set {path[-1]}"
 
 
@@ -95,7 +99,7 @@ def _add(text: str, command: Command) -> tuple[Patch, str]:
         msg = f"nothing can be added to '{name}'"
         raise InputError(msg, hint="one of " + ", ".join(LISTS))
     entries = {key: value_of(value) for key, value in table.items() if value is not None}
-    return add_table(text, name, entries), f"add {name}"
+    return add_table(text, name, table_in_file(entries, text)), f"add {name}"
 
 
 def _remove(text: str, command: Command) -> tuple[Patch, str]:

@@ -15,6 +15,7 @@ from concio.errors import InputError
 from concio.model.drawing.dxf_entities import Entity, read_sheet
 from concio.model.drawing.layers import LayerUse, named_use
 from concio.window.folder import check_files
+from concio.window.own_units import layer_for_page
 from concio.window.worker import Tell
 
 COARSE = 0.01
@@ -65,7 +66,7 @@ def layers(request: Mapping[str, Any], tell: Tell) -> dict[str, Any]:
         sheet, stated = read_sheet(path, "m", COARSE), False
     found: dict[str, dict[str, Any]] = {
         layer: {"name": layer, "count": Counter(), "off": layer.upper() in sheet.hidden, "lines": [],
-                "stated": table.get("layers", {}).get(layer)}
+                "stated": layer_for_page(table.get("layers", {}).get(layer), request["text"])}
         for layer in sheet.layers
     }  # fmt: skip
     room = MOST_LINES

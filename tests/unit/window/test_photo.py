@@ -163,5 +163,5 @@ def test_solids_start_a_model_that_names_them(name: str) -> None:
               [[0, 0], [1, 0], (1, 1)], "a stone", None, [[0, 0], [1, 0], [1e9, 1]]]
 )  # fmt: skip
 def test_outlines_that_are_no_points_are_refused_in_words(stone: Any) -> None:
-    with pytest.raises(InputError, match="points are not pairs of numbers in metres"):
+    with pytest.raises(InputError, match="points are not pairs of numbers"):
         patch_of('name = "a wall"\n', {"do": "stones", "stones": [stone]})
