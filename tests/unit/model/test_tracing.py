@@ -223,3 +223,45 @@ def test_what_no_block_covers_in_a_segmentation_is_left_free() -> None:
     labels[10:30, :30], labels[10:30, 30:] = 1, 2
     model = trace_labels(labels, Photo(np.zeros((40, 60)), 0.01)).model(thickness=0.4)
     assert sum(b.volume for b in model.free_bodies) == pytest.approx(0.6 * 0.2 * 0.4)
+
+
+def in_modes(folder, grey):
+    """The same picture as other programs store it."""
+    eight = Image.fromarray((255 * grey).astype(np.uint8))
+    colours = Image.merge("RGB", [eight] * 3)
+    shade = np.where(grey < 0.5, 255, 0).astype(np.uint8)  # black joints on a background that is transparent
+    blank = np.zeros_like(shade)
+    deep, cmyk = Image.fromarray((65535 * grey).astype(np.uint16)), colours.convert("CMYK")
+    files = {
+        "grey.png": eight, "deep.png": deep, "deep.tif": deep, "cmyk.jpg": cmyk, "cmyk.tif": cmyk,
+        "palette.png": colours.convert("P", palette=Image.Palette.ADAPTIVE),
+        "float.tif": Image.fromarray(grey.astype(np.float32)),
+        "la.png": Image.fromarray(np.dstack([blank, shade]), "LA"),
+        "rgba.png": Image.fromarray(np.dstack([blank] * 3 + [shade])),
+    }  # fmt: skip
+    for name, picture in files.items():
+        picture.save(folder / name, **({"quality": 95} if name.endswith("jpg") else {}))
+        yield name, read_photo(folder / name).grey
+
+
+def test_a_picture_is_the_same_however_it_is_stored(tmp_path):
+    """Black joints on a transparent background, and floating-point values, were black all over."""
+    grey = np.ones((40, 64))
+    grey[18:21] = grey[:18, 30:33] = 0.0
+    for name, found in in_modes(tmp_path, grey):
+        assert found == pytest.approx(grey, abs=0.08 if name.endswith("jpg") else 1e-6), name
+
+
+@pytest.mark.parametrize("orientation", range(1, 9))
+@pytest.mark.parametrize("kind", ["jpg", "png", "tif"])
+def test_a_picture_stands_as_its_camera_says(tmp_path, orientation, kind):
+    """A photograph taken upright lay on its side, while one in TIFF stood: bed joints were head joints."""
+    stored = np.zeros((48, 64), dtype=np.uint8)
+    stored[:16, :16], stored[:16, 48:] = 255, 128  # bright at its upper left corner, half as bright at its upper right
+    exif = Image.Exif()
+    exif[0x0112] = orientation
+    Image.fromarray(stored).save(tmp_path / f"a.{kind}", exif=exif, **({"quality": 100} if kind == "jpg" else {}))
+    found = read_photo(tmp_path / f"a.{kind}").grey
+    turned = {1: lambda a: a, 2: np.fliplr, 3: lambda a: np.rot90(a, 2), 4: np.flipud, 5: np.transpose,
+              6: lambda a: np.rot90(a, -1), 7: lambda a: np.rot90(a, 2).T, 8: np.rot90}[orientation]  # fmt: skip
+    assert found == pytest.approx(turned(stored) / 255.0, abs=0.03)

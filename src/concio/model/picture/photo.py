@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy import ndimage
@@ -14,6 +15,9 @@ from concio.errors import InputError
 from concio.files import check_regular
 from concio.kinematics.frames import cross
 from concio.representation import short_repr
+
+if TYPE_CHECKING:
+    from PIL import Image
 
 Array = np.ndarray
 LUMINANCE = np.array([0.299, 0.587, 0.114])
@@ -149,6 +153,8 @@ def homography(given: Array, wanted: Array) -> Array:
 def read_photo(path: Path | str, *, pixel: float = 1.0) -> Photo:
     """Return a picture from a PNG, JPEG or TIFF file.
 
+    It stands as its EXIF orientation says, and as viewers show it; what is transparent is white.
+
     Parameters
     ----------
     path : Path or str
@@ -172,20 +178,30 @@ def read_photo(path: Path | str, *, pixel: float = 1.0) -> Photo:
     ...     read_photo(file, pixel=0.01).size
     (0.6, 0.4)
     """
-    from matplotlib.image import imread
-
     path = Path(path)
     check_regular(path, hint="give a PNG, JPEG or TIFF file")
+    from PIL import Image, ImageOps, UnidentifiedImageError
+
     try:
-        grey = np.asarray(imread(path), dtype=float)
-    except (OSError, ValueError, SyntaxError, RuntimeError) as error:
-        msg = f"this picture cannot be read: {error}"
+        with path.open("rb") as file, Image.open(file) as picture:  # by name, Pillow garbles grey TIFF that it turns
+            if picture.width * picture.height > LARGEST:
+                msg = f"the picture has {picture.width} x {picture.height} pixels"
+                raise InputError(msg, where=path.name, hint=f"reduce it to {LARGEST / 1e6:g} million pixels at most")
+            picture.load()  # which turns a TIFF already
+            return Photo(_grey(ImageOps.exif_transpose(picture)), pixel)
+    except (OSError, ValueError, SyntaxError, RuntimeError, Image.DecompressionBombError) as error:
+        told = "it is not a picture" if isinstance(error, UnidentifiedImageError) else error
+        msg = f"this picture cannot be read: {told}"
         raise InputError(msg, where=path.name, hint="save it as PNG") from None
-    if grey[..., 0].size > LARGEST or grey.ndim not in (2, 3):
-        msg = f"the picture has {grey.shape[1]} x {grey.shape[0]} pixels"
-        raise InputError(msg, where=path.name, hint=f"reduce it to {LARGEST / 1e6:g} million pixels at most")
-    if grey.ndim == 3:
-        grey = grey[..., :3] @ LUMINANCE if grey.shape[2] > 2 else grey[..., 0]
-    low, high = float(grey.min()), float(grey.max())
-    scale = next((full for full in (1.0, 255.0, 65535.0) if high <= full), high)
-    return Photo(np.clip((grey - min(low, 0.0)) / scale, 0.0, 1.0), pixel)
+
+
+def _grey(picture: Image.Image) -> Array:
+    """Return grey values from 0 to 1 of a picture in any mode; what is transparent is white."""
+    if picture.mode in ("I", "F") or picture.mode.startswith("I;"):  # more than 8 bits, or floating-point values
+        deep = np.nan_to_num(np.asarray(picture, dtype=float), posinf=0.0, neginf=0.0)
+        low, high = float(deep.min()), float(deep.max())
+        full = next((one for one in (1.0, 255.0, 65535.0) if high <= one), high)
+        return np.asarray(np.clip((deep - min(low, 0.0)) / full, 0.0, 1.0))
+    colours = np.asarray(picture.convert("RGBA"), dtype=float) / 255.0
+    opaque = colours[..., 3]
+    return np.asarray(opaque * (colours[..., :3] @ LUMINANCE) + 1.0 - opaque)
