@@ -285,3 +285,25 @@ def test_other_ways_to_write_it(tmp_path: Path) -> None:
     assert decoded(r"\X2\03B103B2\X0\-\X\E9-\S\i-''-\\") == "αβ-é-é-'-\\"
     with pytest.raises(InputError, match=r"'.ifczip' is not a format.*save it as .ifc"):
         concio.model_from_solids(tmp_path / "m.ifczip", block="rigid")
+
+
+def test_a_product_with_two_bodies_is_refused(tmp_path: Path) -> None:
+    """The last one was read and the other one left out without a word."""
+    file = IfcText()
+    first, second = (file.shape(file.brep(CUBE + np.array([0, 0, up]), BOX)) for up in (0, 1))
+    shape = file.add(f"IFCPRODUCTDEFINITIONSHAPE($,$,({first},{second}))")
+    file.add(f"IFCWALL({file.identifier()},$,'pier',$,$,$,{shape},$,$)")
+    with pytest.raises(GeometryError, match=rf"has more than one body: {first}, {second}"):
+        read(file, tmp_path)
+
+
+def test_an_opening_in_what_a_product_is_part_of_is_not_passed_over(tmp_path: Path) -> None:
+    """A leaf of a wall was read without the window that the wall has: 1 m3 of stone."""
+    file = IfcText()
+    wall = file.product("wall", kind="IFCWALL")
+    leaf = file.product("leaf", file.brep(CUBE, BOX), kind="IFCBUILDINGELEMENTPART")
+    window = file.product("window", file.brep(0.5 * CUBE, BOX), kind="IFCOPENINGELEMENT")
+    file.relate("IFCRELAGGREGATES", wall, f"({leaf})")
+    file.relate("IFCRELVOIDSELEMENT", wall, window)
+    with pytest.raises(GeometryError, match=rf"is part of {wall} IFCWALL, which has an opening, {window}"):
+        read(file, tmp_path)

@@ -16,6 +16,8 @@ import numpy as np
 
 from concio.errors import InputError
 from concio.files import read_text
+from concio.kinematics.frames import cross
+from concio.model.polyhedron import BOX
 from concio.model.solids.shapes import Array, Scene, Shape, check_size
 
 
@@ -44,6 +46,12 @@ NAMELESS = frozenset({"", "Mesh", "Block", "BlockElement", "Box", "Polyhedron", 
 """Names that COMPAS gives to what has none: those of classes."""
 
 
+NO_FACES = frozenset({
+    "Sphere", "Cylinder", "Cone", "Capsule", "Torus", "Brep", "RhinoBrep", "OCCBrep", "VolMesh", "CellNetwork",
+})  # fmt: skip
+"""Solids of COMPAS that a file states without faces, or with the faces of several."""
+
+
 @dataclass(frozen=True)
 class _Place:
     """What is known of a part of a file from what holds it: its name, whether it is fixed, and where it stands."""
@@ -58,22 +66,53 @@ class _Place:
         tables = (thing, attributes) if isinstance(attributes, dict) else (thing,)
         names = [table.get("name") for table in tables if table is attributes or "geometry" in table]
         name = next((n for n in names if isinstance(n, str) and n not in NAMELESS), self.name)
-        fixed = self.fixed or any(table.get("is_support") is True for table in tables)
-        return _Place(name, fixed, self.moved(thing.get("transformation"), where))
+        fixed = self.fixed or any([_is_support(table, where) for table in tables])
+        return _Place(name, fixed, self.moved(thing, where))
 
-    def moved(self, transformation: Any, where: str) -> Array | None:
-        """Return the matrix (4, 4) with a transformation of the file within it."""
-        own = _matrix(transformation, where)
-        if own is None or self.matrix is None:
-            return self.matrix if own is None else own
-        return np.asarray(self.matrix @ own)
+    def moved(self, thing: dict[str, Any], where: str) -> Array | None:
+        """Return the matrix (4, 4) with the frame and the transformation of an element within it."""
+        found = self.matrix
+        element = any(key in thing for key in ("geometry", "shape", "transformation", "elements"))
+        frame = _frame(thing.get("frame") if element else None, where)
+        for own in (frame, _matrix(thing.get("transformation"), where)):
+            if own is not None:
+                found = own if found is None else np.asarray(found @ own)
+        return found
+
+
+def _is_support(table: dict[str, Any], where: str) -> bool:
+    """Return whether a table says that a block is a support; true and 1 do."""
+    said = table.get("is_support")
+    if said is None or (isinstance(said, bool | int) and said in (0, 1)):
+        return bool(said)
+    msg = f"is_support is {json.dumps(said)[:40]}"
+    raise InputError(msg, where=where, hint="write true or false")
+
+
+def _frame(frame: Any, where: str) -> Array | None:
+    """Return the matrix (4, 4) that takes coordinates in a frame into those around it; None for none."""
+    if frame is None:
+        return None
+    try:
+        data = frame["data"]
+        origin, x, y = (np.array(data[key], dtype=float).reshape(3) for key in ("point", "xaxis", "yaxis"))
+        z = cross(x, y)
+        if np.isfinite(origin).all() and 0 < np.linalg.norm(z) < np.inf:
+            x, z = x / np.linalg.norm(x), z / np.linalg.norm(z)
+            matrix = np.eye(4)
+            matrix[:3, :3], matrix[:3, 3] = np.column_stack([x, cross(z, x), z]), origin
+            return matrix
+    except (KeyError, TypeError, ValueError):
+        pass
+    msg = "a frame is not a point and two axes that span a plane"
+    raise InputError(msg, where=where, hint="write the model again with compas.json_dump")
 
 
 def _matrix(transformation: Any, where: str) -> Array | None:
     """Return the matrix of a transformation; None for none."""
-    if not isinstance(transformation, dict):
+    if transformation is None:
         return None
-    data: Any = transformation.get("data")
+    data: Any = transformation.get("data") if isinstance(transformation, dict) else None
     try:
         matrix: Array = np.array(data["matrix"], dtype=float)
         if matrix.shape == (4, 4) and np.array_equal(matrix[3], (0.0, 0.0, 0.0, 1.0)):
@@ -94,6 +133,14 @@ def _shapes(data: Any, where: str) -> Iterator[Shape]:
         if not isinstance(thing, dict):
             continue
         inside = place.within(thing, where)
+        if (kind := str(thing.get("dtype", "")).rpartition("/")[2]) in NO_FACES or thing.get("cell"):
+            what = f"is a {kind or 'CellNetwork'}, which is not read"
+            hint = "write it as a mesh, each cell as one of its own"
+            yield Shape(inside.name, "", np.zeros((0, 3)), (), inside.fixed, unreadable=(what, hint))
+            continue
+        if kind == "Box":
+            yield _box(thing, inside, where)
+            continue
         points, faces = (thing.get(a, thing.get(b)) for a, b in (("vertex", "vertices"), ("face", "faces")))
         if points and faces and isinstance(points, dict | list) and isinstance(faces, dict | list):
             yield _mesh(points, faces, inside, where)
@@ -131,9 +178,24 @@ def _groups(root: Any, elements: dict[str, Any], place: _Place, where: str) -> d
         data = held.get("data") if isinstance(held, dict) else None
         inside = around
         if isinstance(data, dict):
-            inside = replace(around, matrix=around.moved(data.get("transformation"), where))
+            inside = replace(around, matrix=around.moved(data, where))
         waiting += [(child, inside) for child in node.get("children") or []]
     return found
+
+
+def _box(thing: dict[str, Any], at_place: _Place, where: str) -> Shape:
+    """Return a box of COMPAS: sizes about the origin of its frame."""
+    data = thing.get("data")
+    try:
+        sizes = [float(data[key]) for key in ("xsize", "ysize", "zsize")]  # type: ignore[index]
+    except (KeyError, TypeError, ValueError):
+        msg = "a box has no xsize, ysize and zsize"
+        raise InputError(msg, where=where, hint="write the model again with compas.json_dump") from None
+    own = _frame(data.get("frame"), where)  # type: ignore[union-attr]
+    corners = np.array([[x, y, z] for z in (-0.5, 0.5) for y in (-0.5, 0.5) for x in (-0.5, 0.5)]) * sizes
+    if own is not None:
+        corners = corners @ own[:3, :3].T + own[:3, 3]
+    return _mesh(corners.tolist(), [list(face) for face in BOX], at_place, where)
 
 
 def _mesh(points: Any, faces: Any, at_place: _Place, where: str) -> Shape:

@@ -76,9 +76,11 @@ def _scene(file: StepFile) -> Scene:
             if items is None:
                 left_out.append(f"'{name}' ({source}) has no body")
                 continue
-            if number in openings:
-                what = f"has an opening, #{openings[number]}, which is not cut out"
-                product.refuse(what, f"{TESSELLATE}, openings cut, or model the blocks round the opening")
+            for host in words.hosts(product):
+                if host.number in openings:
+                    whole = "" if host is product else f"is part of {host.label}, which "
+                    what = f"{whole}has an opening, #{openings[host.number]}, which is not cut out"
+                    product.refuse(what, f"{TESSELLATE}, openings cut, or model the blocks round the opening")
             matrix = placements.matrix(product.open_instance(5))
             surfaces = [moved(s, matrix) for item in items for s in bodies.surfaces(item)]
         except InputError as error:
@@ -92,13 +94,16 @@ def _scene(file: StepFile) -> Scene:
 
 def _body(shape: Instance) -> list[Instance] | None:
     """Return the items of the body of a product, None where it has none."""
-    found = None
+    found, bodies = None, []
     for representation in shape.instances(2):
         if representation.kind != "IFCSHAPEREPRESENTATION":
             continue
         own, sort = representation.text(1), representation.text(2)
         solid = sort in ("Brep", "SweptSolid", "Tessellation", "SurfaceModel", "MappedRepresentation", "AdvancedBrep",
                          "Clipping", "CSG", "SolidModel", "AdvancedSweptSolid")  # fmt: skip
+        bodies += [f"#{representation.number}"] if own == "Body" else []
+        if len(bodies) > 1:
+            shape.refuse(f"has more than one body: {', '.join(bodies)}", "export one representation of the body")
         if own == "Body" or (found is None and own in ("", "Facetation", "Mesh") and solid):
             found = representation.instances(3)
     return found
@@ -131,14 +136,17 @@ class _Words:
         layers = list(dict.fromkeys(self._layers(product)))
         kind = product.text(4)
         tags = [_WRITTEN.get(product.kind, product.kind), *layers, kind, own.text(2) if own else ""]
-        at, seen = product, {product.number}
-        while at.number in self.parent and self.parent[at.number].number not in seen:
-            at = self.parent[at.number]
-            seen.add(at.number)
-            if at.kind != "IFCPROJECT":
-                tags.append(at.text(2))
+        tags += [at.text(2) for at in self.hosts(product)[1:] if at.kind != "IFCPROJECT"]
         fixed = any(word.lower() in FIXED for word in (*layers, kind))
         return _material(material), [tag for tag in dict.fromkeys(tags) if tag], fixed
+
+    def hosts(self, product: Instance) -> list[Instance]:
+        """Return a product and what it is part of, one after the other: an assembly, a storey, a building."""
+        found, seen = [product], {product.number}
+        while found[-1].number in self.parent and self.parent[found[-1].number].number not in seen:
+            found.append(self.parent[found[-1].number])
+            seen.add(found[-1].number)
+        return found
 
     def _layers(self, product: Instance) -> Iterator[str]:
         for representation in product.instance(6).instances(2):
