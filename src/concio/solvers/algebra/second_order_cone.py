@@ -31,9 +31,14 @@ def times(A: Array, x: Array) -> Array:
 def product(a: Array, b: Array) -> Array:
     """Return the Jordan product, (a'b, a_0 b_t + b_0 a_t)."""
     result = np.empty_like(a)
-    result[:, 0] = (a * b).sum(axis=1)
+    result[:, 0] = dotted(a, b)
     result[:, 1:] = a[:, :1] * b[:, 1:] + b[:, :1] * a[:, 1:]
     return result
+
+
+def dotted(a: Array, b: Array) -> Array:
+    """Return the products a'b (m,) of the rows of two arrays (m, s)."""
+    return np.asarray(np.einsum("ki,ki->k", a, b))
 
 
 def tangential_norm(a: Array) -> Array:
@@ -96,7 +101,7 @@ def _of_two(H: Array) -> Array:
 def divide(a: Array, r: Array) -> Array:
     """Return x with a o x = r, a inside the cone."""
     x = np.empty_like(r)
-    x[:, 0] = (a[:, 0] * r[:, 0] - (a[:, 1:] * r[:, 1:]).sum(axis=1)) / determinant(a)
+    x[:, 0] = (a[:, 0] * r[:, 0] - dotted(a[:, 1:], r[:, 1:])) / determinant(a)
     x[:, 1:] = (r[:, 1:] - x[:, :1] * a[:, 1:]) / a[:, :1]
     return x
 
@@ -117,17 +122,25 @@ def mirrored(a: Array) -> Array:
     return mirror
 
 
-def reach(x: Array, dx: Array) -> float:
-    """Return the smallest step at which a row of x + step dx leaves the cone; inf where none does."""
-    a, c = determinant(dx), np.maximum(determinant(x), 0.0)
-    b = x[:, 0] * dx[:, 0] - (x[:, 1:] * dx[:, 1:]).sum(axis=1)
-    root = b * b - a * c
-    q = -(b + np.where(b >= 0, 1.0, -1.0) * np.sqrt(np.maximum(root, 0.0)))
-    least = np.inf
+def reach(x: Array, dx: Array, inside: Array | None = None) -> float:
+    """Return the smallest step at which a row of x + step dx leaves the cone; inf where none does.
+
+    With a and c the determinants of dx and x, it is the first positive root of a step^2 + 2 b step + c. The roots are
+    real where x is inside the cone, and its inverse is (root - b) / c or -a / (b + root), whichever does not cancel.
+
+    Parameters
+    ----------
+    x, dx : (m, d) arrays
+    inside : (m,) array, optional
+        Determinants of x, where they are known.
+    """
+    a, c = determinant(dx), np.maximum(determinant(x) if inside is None else inside, 0.0)
+    b = x[:, 0] * dx[:, 0] - dotted(x[:, 1:], dx[:, 1:])
+    root = np.sqrt(np.maximum(b * b - a * c, 0.0))
     with np.errstate(divide="ignore", invalid="ignore"):
-        for step, real in ((q / a, root >= 0), (c / q, root >= 0), (-x[:, 0] / dx[:, 0], dx[:, 0] < 0)):
-            least = min(least, float(np.min(step[real & (step > 0)], initial=np.inf)))
-    return least
+        most = np.where(b < 0, (root - b) / c, -a / (b + root))
+        fastest = float(np.fmax.reduce(most, initial=0.0))
+        return 1.0 / fastest if fastest > 0 else np.inf
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,6 +155,8 @@ class Scaling:
         d eta = q - M d beta in Newton's equations.
     point : (m, d) array
         lambda, the common image of both.
+    inside : pair of (m,) arrays
+        Determinants of beta and eta.
     """
 
     beta: Array
@@ -150,6 +165,7 @@ class Scaling:
     inverse: Array
     M: Array
     point: Array
+    inside: tuple[Array, Array]
 
     @classmethod
     def of(cls, beta: Array, eta: Array) -> Scaling | None:
@@ -157,15 +173,16 @@ class Scaling:
         of_beta, of_eta = determinant(beta), determinant(eta)
         if not (of_beta.min(initial=1.0) > 0 and of_eta.min(initial=1.0) > 0):
             return None
+        inside = of_beta, of_eta
         of_beta, of_eta = np.sqrt(of_beta), np.sqrt(of_eta)
         b, e = beta / of_beta[:, None], eta / of_eta[:, None]
-        w = (b + mirrored(e)) / np.sqrt(2.0 * (1.0 + (b * e).sum(axis=1)))[:, None]
+        w = (b + mirrored(e)) / np.sqrt(2.0 * (1.0 + dotted(b, e)))[:, None]
         h = w.copy()
         h[:, 0] += 1.0
         h /= np.sqrt(2.0 * h[:, :1])
         size = np.sqrt(of_beta / of_eta)[:, None, None]
         W, inverse = quadratic(h) * size, quadratic(mirrored(h)) / size
-        return cls(beta, eta, W, inverse, quadratic(mirrored(w)) / size**2, times(W, eta))
+        return cls(beta, eta, W, inverse, quadratic(mirrored(w)) / size**2, times(W, eta), inside)
 
     @staticmethod
     def coordinates(x: Array) -> Array:
@@ -192,7 +209,12 @@ class Scaling:
 
     def reach(self, d_beta: Array, d_eta: Array) -> float:
         """Return the smallest step at which beta or eta leaves its cone; inf where none does."""
-        return min(reach(self.beta, d_beta), reach(self.eta, d_eta))
+        return min(*self.reaches(d_beta, d_eta))
+
+    def reaches(self, d_beta: Array, d_eta: Array) -> tuple[float, float]:
+        """Return the smallest steps at which beta and eta leave their cones; inf where none does."""
+        of_beta, of_eta = self.inside
+        return reach(self.beta, d_beta, of_beta), reach(self.eta, d_eta, of_eta)
 
     @cached_property
     def square(self) -> Array:

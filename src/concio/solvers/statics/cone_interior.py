@@ -101,7 +101,8 @@ def maximise(
         for iteration in range(CONE_ITERATIONS + 1):
             r_p = programme.pull(p.t) + e + p.multiplier * g
             r_d = programme.rate(p.v) - programme.pressed(p.z, p.eta, p.w)
-            r_d[~programme.rough, 1:] = 0.0
+            if not programme.all_rough:
+                r_d[~programme.rough, 1:] = 0.0
             r_g = 1.0 - float(g @ p.v)
             gap = programme.gap(p)
             force, speed = max(1.0, float(p.t[:, 0].max())), max(1.0, float(np.abs(p.v).max()))

@@ -7,7 +7,7 @@ beta = (c + mu t_n, t_t) and w of the caps t_n <= N; see :mod:`concio.solvers.st
 from __future__ import annotations
 
 from collections import OrderedDict
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from hashlib import blake2b
 
@@ -19,6 +19,7 @@ from concio.problem.contact_problem import Array, Engine
 from concio.problem.products import product
 from concio.problem.tolerances import SMOOTH
 from concio.solvers.algebra.block_factor import BlockFactor
+from concio.solvers.algebra.second_order_cone import dotted
 from concio.solvers.statics.pivoted import Mixed
 
 START = 3.0
@@ -87,9 +88,13 @@ class Point:
 
     def moved(self, d: Point, primal: float, dual: float) -> Point:
         """Return the point after the shares ``primal`` and ``dual`` of a direction."""
-        step = {"t": primal, "multiplier": primal}
         return Point(
-            **{f.name: getattr(self, f.name) + step.get(f.name, dual) * getattr(d, f.name) for f in fields(self)}
+            self.t + primal * d.t,
+            self.multiplier + primal * d.multiplier,
+            self.v + dual * d.v,
+            self.z + dual * d.z,
+            self.eta + dual * d.eta,
+            self.w + dual * d.w,
         )
 
 
@@ -157,7 +162,10 @@ class ConeProgramme:
         self.coulomb = self.rough & (cone.friction > SMOOTH)  # the others with friction have a constant strength
         self.mu = np.where(self.coulomb, cone.friction, 0.0)
         self.cone = replace(cone, friction=self.mu)
+        self.tresca = self.rough & ~self.coulomb
         self.line = ~self.rough | (cone.cohesion > 0)  # where the cone itself does not keep t_n >= 0
+        self.has_lines, self.has_caps = bool(self.line.any()), bool(self.capped.any())
+        self.has_tresca, self.all_rough = bool(self.tresca.any()), bool(self.rough.all())
         self.degenerate = False
         self.count = max(int(self.line.sum()) + 2 * int(self.rough.sum()) + int(self.capped.sum()), 1)
 
@@ -178,20 +186,30 @@ class ConeProgramme:
         """Return beta (m, d); (1, 0) where there is no cone."""
         beta = t.copy()
         beta[:, 0] = self.cone.linear_strength(t[:, 0])
-        beta[~self.rough] = 0.0
-        beta[~self.rough, 0] = 1.0
+        if not self.all_rough:
+            beta[~self.rough] = 0.0
+            beta[~self.rough, 0] = 1.0
         return beta
 
     def pressed(self, z: Array, eta: Array, w: Array) -> Array:
         """Return G'z (m, d): the velocities that multipliers stand for."""
-        rates = np.where(self.rough[:, None], eta, 0.0)
-        rates[:, 0] = self.mu * rates[:, 0] + np.where(self.line, z, 0.0) - np.where(self.capped, w, 0.0)
+        rates = eta.copy() if self.all_rough else np.where(self.rough[:, None], eta, 0.0)
+        rates[:, 0] *= self.mu
+        if self.has_lines:
+            rates[:, 0] += np.where(self.line, z, 0.0)
+        if self.has_caps:
+            rates[:, 0] -= np.where(self.capped, w, 0.0)
         return rates
 
     def gap(self, p: Point) -> float:
         """Return the sum of the complementarity products."""
-        total = (p.t[:, 0] * p.z)[self.line].sum() + (self.strength(p.t) * p.eta)[self.rough].sum()
-        return float(total + ((self.cap - p.t[:, 0]) * p.w)[self.capped].sum())
+        of_cones = dotted(self.strength(p.t), p.eta)
+        total = float((of_cones if self.all_rough else of_cones[self.rough]).sum())
+        if self.has_lines:
+            total += float((p.t[:, 0] * p.z)[self.line].sum())
+        if self.has_caps:
+            total += float(((self.cap - p.t[:, 0]) * p.w)[self.capped].sum())
+        return total
 
     def start(self, size: float = START) -> Point:
         """Return a point far outside."""
