@@ -110,6 +110,40 @@ def test_forces_are_those_of_the_program(
         assert own.point == pytest.approx(f.point, rel=1e-9)
 
 
+@settings(max_examples=sample(5, 12, 40), deadline=None)
+@given(st.integers(0, 2**32 - 1), st.floats(1e-5, 2e-4), st.sampled_from(["lower", "upper"]))
+def test_loads_on_drawn_lines_are_those_of_the_program(seed: int, tolerance: float, face: str) -> None:
+    """Corners of a drawing and the line of a load lie beside each other by the gap tolerance."""
+    rng = np.random.default_rng(seed)
+
+    def drawn(points: list[tuple[float, float]]) -> np.ndarray:
+        return np.array(points) + rng.uniform(-0.5, 0.5, (len(points), 2)) * tolerance
+
+    low = [Body(f"low{k}", drawn([(k, 0), (k + 1, 0), (k + 1, 1), (k, 1)]), kind="rigid") for k in range(3)]
+    top = [Body(f"top{k}", drawn([(k, 1), (k + 1, 1), (k + 1, 2), (k, 2)]), kind="rigid") for k in range(3)]
+    edge = tuple(map(tuple, drawn([(0.25, 1.0), (2.6, 1.0)])))
+    loads = (Load("weight", (0, -1)), Load("traction", (3.0, -10.0), edge=edge, face=face))  # type: ignore[arg-type]
+    model = Model((*low, *top), {"block": Rigid(18.0)}, {"joint": JointLaw(0.5)}, loads=loads, gap_tolerance=tolerance)
+    mine = {(f.load, f.body): f for f in hand_forces(model)}
+    theirs = [f for f in applied_forces(model, range(len(loads))) if f.force.any()]
+    assert len(mine) == len(theirs) == 9
+    for f in theirs:
+        own = mine[f.load, f.body]
+        assert own.force == pytest.approx(f.force, rel=1e-6, abs=1e-6)
+        assert own.point == pytest.approx(f.point, rel=1e-7, abs=1e-7)
+
+
+@pytest.mark.long  # an assessment of 182 stones
+def test_the_check_by_hand_of_the_facade_of_the_examples_agrees() -> None:
+    """Coordinates of the drawing are rounded, floors and roof load it along lines, and joints slide."""
+    model = concio.load(Path(__file__).parents[3] / "examples" / "facade.toml")
+    dead = replace(model, loads=tuple(load for load in model.loads if load.group != "live"))
+    found = concio.assess(dead, site=site(), direction="right", levels=["SLV"])
+    assert any(check.part("load") for check in found.hand_checks)
+    assert any(check.part("joint") for check in found.hand_checks)
+    assert all(check.agrees for check in found.hand_checks)
+
+
 def test_volumes_of_blocks_in_space_are_sums_of_tetrahedra() -> None:
     box = Polyhedron.box("b", (1, 2, 3), (2, 4, 6))
     volume, centroid = measured(box)

@@ -34,6 +34,10 @@ Array = np.ndarray
 AGREES = {2: 1e-6, 3: 1e-5}
 """Largest relative difference of alpha_0 by hand and by the program; in space motions come from cone programmes."""
 
+STILL = 10.0
+"""Joints whose sides move along each other by less than this many times ``AGREES``, over the control point, do not slide,
+and those that move apart by less do not open."""
+
 CARRIES = 1e-9
 """Contact forces below this share of the largest are none."""
 
@@ -95,12 +99,15 @@ class HandCheck:
         Largest displacement, over that of the control point, by which a joint that carries force would open or a block
         enter another.
     dim : int
+    stuck : float
+        The most that friction can work in joints that do not slide: what the coordinates of a drawing leave open.
     """
 
     rows: tuple[HandRow, ...]
     program: float
     open: float
     dim: int
+    stuck: float = 0.0
 
     @cached_property
     def resists(self) -> float:
@@ -125,7 +132,8 @@ class HandCheck:
     @property
     def agrees(self) -> bool:
         """Whether both are the same, and the motion is one that the joints allow."""
-        return self.difference <= AGREES[self.dim] and self.open <= 10 * AGREES[self.dim]
+        most = AGREES[self.dim] + self.stuck / max(abs(self.pushes * self.program), 1e-12)
+        return self.difference <= most and self.open <= STILL * AGREES[self.dim]
 
     def part(self, kind: str) -> tuple[HandRow, ...]:
         """Return the rows of a kind."""
@@ -201,8 +209,9 @@ class _Hand:
         forces = [f for f in self.forces if f.body in self.of_body]
         sign = self._sign()
         rows = [self.of_force(f, sign) for f in forces]
-        rows += [*self.of_ties(), *self.of_joints()]
-        return HandCheck(tuple(rows), self.m.multiplier, self.opening(), self.dim)
+        joints, stuck = self.of_joints()
+        rows += [*self.of_ties(), *joints]
+        return HandCheck(tuple(rows), self.m.multiplier, self.opening(), self.dim, stuck)
 
     def _sign(self) -> float:
         """Return which way load groups that push are multiplied."""
@@ -264,13 +273,19 @@ class _Hand:
         found = linkage.balance(np.zeros((len(linkage.mechanics.blocks), 3)), plastic=True)
         return np.zeros(len(linkage.mechanics.joints)) if found is None else found.normal_force
 
-    def of_joints(self) -> list[HandRow]:
-        """Return the work of friction, and of what crushes or opens, between each two macro-blocks that slide."""
+    def of_joints(self) -> tuple[list[HandRow], float]:
+        """Return the work of friction, and of what crushes or opens, between each two macro-blocks that slide.
+
+        With the most that friction can do where they do not.
+        """
+        stuck = 0.0
         sums: dict[tuple[int, int], list[tuple[float, Array, float, float]]] = {}
         for a, b, point, normal, N, mu, c in self.joints():
             apart = self.moved(b, point) - self.moved(a, point)
             opens = float(apart @ normal)
             slip = float(np.sqrt(((apart - opens * normal) ** 2).sum()))
+            if slip <= self.still(a, b):
+                stuck, slip = stuck + (mu * N + c) * slip, 0.0
             work = (mu * N + c) * slip - N * opens
             key = (-1 if a is None else a, -1 if b is None else b)
             sums.setdefault(key, []).append((N, point, slip, work))
@@ -284,7 +299,15 @@ class _Hand:
             slip = sum(n * s for n, _, s, _ in parts) / N
             rows.append(HandRow("joint", f"{self.label(a)} / {self.label(b)}", b, -1, N, tuple(at.tolist()), slip, 0.0,
                                 work, 0.0))  # fmt: skip
-        return rows
+        return rows, stuck
+
+    def still(self, a: int | None, b: int | None) -> float:
+        """Return the slip between two macro-blocks that turn, up to which they stick.
+
+        Drawn points of one joint lie beside each other by up to twice the gap tolerance of the model.
+        """
+        turn = max((float(np.abs(self.motion[g][1]).max()) for g in (a, b) if g in self.motion), default=0.0)
+        return STILL * AGREES[self.dim] + 2.0 * (self.model.gap_tolerance or 0.0) * turn
 
     def label(self, g: int) -> str:
         """Return the name of a macro-block; "-" of what stands."""

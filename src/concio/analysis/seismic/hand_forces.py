@@ -22,7 +22,8 @@ from concio.model.model import Load, Model
 Array = np.ndarray
 
 ON_LINE = 1e-6
-"""Sides of blocks nearer than this to the line of a load, over the size of the structure, lie on it."""
+"""Sides of blocks nearer than this to the line of a load, over the size of the structure, lie on it; so do those nearer
+than twice the gap tolerance of the model."""
 
 FACING = {"lower": (-1, 1.0), "upper": (-1, -1.0), "left": (0, 1.0), "right": (0, -1.0)}
 """Of two faces that meet under a line load: component and sign of the outward normal of the one that is loaded."""
@@ -110,16 +111,19 @@ def _on_sides(model: Model, k: int, load: Load, chosen: Sequence[int]) -> list[H
     normal = np.array([-along[1], along[0]])
     around = surroundings(model)
     sides: list[tuple[int, float, float, Array]] = []
+    runs: list[tuple[float, Array, Array]] = []  # where a side begins on the line and as it is drawn, and its slope
     for b in chosen:
-        ring, near = model.outlines[b].outline, ON_LINE * float(around.size[b])
+        ring, near = model.outlines[b].outline, max(ON_LINE * float(around.size[b]), 2 * (model.gap_tolerance or 0.0))
         for a, c in zip(ring, np.roll(ring, -1, axis=0), strict=True):
             s, t = float((a - p) @ along), float((c - p) @ along)
             low, high = max(min(s, t), 0.0), min(max(s, t), length)
-            if abs(float((a - p) @ normal)) < near and abs(float((c - p) @ normal)) < near and high - low > near:
+            off = max(abs(float((a - p) @ normal)), abs(float((c - p) @ normal)))
+            if off <= near and high - low > near:
                 sides.append((b, low, high, normal if s > t else -normal))
+                runs.append((s, a, (c - a) / (t - s)))
     axis, sign = FACING[load.face if load.face in FACING else "lower"]
     found = []
-    for b, low, high, outward in sides:
+    for (b, low, high, outward), (first, corner, slope) in zip(sides, runs, strict=True):
         pieces = [(low, high)]
         if load.face != "both" and sign * outward[axis] < 0:
             for _, x, y, other in sides:
@@ -128,5 +132,5 @@ def _on_sides(model: Model, k: int, load: Load, chosen: Sequence[int]) -> list[H
                               if piece[1] - piece[0] > near]  # fmt: skip
         vector = -load.value[0] * outward if load.kind == "pressure" else np.array(load.value, dtype=float)
         deep = model.outlines[b].thickness
-        found += [HandForce(k, b, vector * deep * (v - u), p + along * (u + v) / 2) for u, v in pieces]
+        found += [HandForce(k, b, vector * deep * (v - u), corner + slope * ((u + v) / 2 - first)) for u, v in pieces]
     return found

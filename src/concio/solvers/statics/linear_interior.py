@@ -29,6 +29,7 @@ import scipy.sparse as sp
 
 from concio.problem.contact_problem import Array
 from concio.problem.limits_of_work import PROGRAMME_ITERATIONS
+from concio.problem.products import product
 from concio.problem.tolerances import PROGRAMME_ENOUGH, PROGRAMME_TARGET, STILL_CLOSE
 from concio.solvers.algebra.normal_equations import NormalEquations
 
@@ -77,6 +78,11 @@ class LinearAnswer:
 
 @dataclass
 class _Point:
+    """A point or a direction: variables, slacks of upper bounds, their multipliers, those of the equations, free ones.
+
+    ``s`` and ``w`` have an entry for each variable with an upper bound.
+    """
+
     x: Array
     s: Array
     z: Array
@@ -112,31 +118,29 @@ class _Programme:
         self.load = float(np.abs(b).max(initial=0.0)) or 1.0
         self.b = b[order] / self.load
         self.upper = (upper[self.held] - self.lower) / self.load
-        self.capped = np.isfinite(self.upper)
+        self.capped = np.flatnonzero(np.isfinite(self.upper))
+        self.room = self.upper[self.capped]
         c, c_free = cost[self.held], cost[self.is_free] / self.width
         self.price = max(float(np.abs(c).max(initial=0.0)), float(np.abs(c_free).max(initial=0.0))) or 1.0
         self.c, self.c_free = c / self.price, c_free / self.price
-        self.count = self.c.size + int(self.capped.sum())
+        self.count = self.c.size + self.capped.size
 
     def start(self) -> _Point:
         x = np.full(self.c.size, START)
-        x[self.capped] = np.minimum(START, 0.5 * self.upper[self.capped])
-        s = np.where(self.capped, np.where(self.capped, self.upper, 0.0) - x, 1.0)
-        z = np.full(self.c.size, START)
-        w = np.where(self.capped, START, 0.0)
-        return _Point(x, s, z, w, np.zeros(self.b.size), np.zeros(self.c_free.size))
+        x[self.capped] = np.minimum(START, 0.5 * self.room)
+        z, w = np.full(self.c.size, START), np.full(self.room.size, START)
+        return _Point(x, self.room - x[self.capped], z, w, np.zeros(self.b.size), np.zeros(self.c_free.size))
 
     def residuals(self, p: _Point) -> tuple[Array, Array, Array, Array]:
         """Residuals of the equations, of the reduced costs, of those of free columns, and of the upper bounds."""
-        r_p = self.b - self.normal.A @ p.x - self.F @ p.free
-        r_d = self.c - self.normal.At @ p.y - p.z + p.w
-        r_f = self.c_free - self.F.T @ p.y
-        r_u = np.where(self.capped, np.where(self.capped, self.upper, 0.0) - p.x - p.s, 0.0)
-        return r_p, r_d, r_f, r_u
+        r_p = self.b - product(self.normal.A, p.x) - self.F @ p.free
+        r_d = self.c - product(self.normal.At, p.y) - p.z
+        r_d[self.capped] += p.w
+        return r_p, r_d, self.c_free - self.F.T @ p.y, self.room - p.x[self.capped] - p.s
 
     def gap(self, p: _Point) -> float:
         """Sum of the complementarity products."""
-        return float(p.x @ p.z + p.s[self.capped] @ p.w[self.capped])
+        return float(p.x @ p.z + p.s @ p.w)
 
     def objective(self, value: float, cost: Array) -> float:
         """Return the objective of the scaled programme where that of the programme as it was given is ``value``."""
@@ -144,14 +148,15 @@ class _Programme:
 
     def least(self, y: Array) -> float:
         """Return what the objective is not below, by weak duality, where variables sum to less than ``LARGEST``."""
-        below, capped = np.minimum(self.c - self.normal.At @ y, 0.0), self.capped
-        wrong = max(float(-below[~capped].min(initial=0.0)), float(np.abs(self.c_free - self.F.T @ y).max(initial=0.0)))
-        return float(self.b @ y + below[capped] @ self.upper[capped]) - LARGEST * wrong
+        below = np.minimum(self.c - product(self.normal.At, y), 0.0)
+        of_bounds = float(below[self.capped] @ self.room)
+        below[self.capped] = 0.0
+        wrong = max(float(-below.min(initial=0.0)), float(np.abs(self.c_free - self.F.T @ y).max(initial=0.0)))
+        return float(self.b @ y) + of_bounds - LARGEST * wrong
 
     def steps(self, p: _Point, d: _Point) -> tuple[float, float]:
         """Longest steps <= 1 of the primal and of the dual part."""
-        c = self.capped
-        return min(_longest(p.x, d.x), _longest(p.s[c], d.s[c])), min(_longest(p.z, d.z), _longest(p.w[c], d.w[c]))
+        return min(_longest(p.x, d.x), _longest(p.s, d.s)), min(_longest(p.z, d.z), _longest(p.w, d.w))
 
     def restore(self, p: _Point) -> tuple[Array, Array]:
         """Return x and y of the programme as it was given."""
@@ -164,24 +169,47 @@ class _Programme:
 
 
 def _longest(v: Array, d: Array) -> float:
-    down = d < 0
-    return min(1.0, float(np.min(-v[down] / d[down]))) if down.any() else 1.0
+    """Return the longest step <= 1 at which no entry of v + step d, v positive, is negative."""
+    fastest = float(np.fmax.reduce(-d / v, initial=0.0))
+    return 1.0 / fastest if fastest > 1.0 else 1.0
 
 
-def _direction(
-    q: _Programme, p: _Point, rest: tuple[Array, Array, Array, Array], border: tuple[Array, Array, Array], x_z: Array,
-    s_w: Array,
-) -> _Point:  # fmt: skip
-    """Newton direction with x dz + z dx = x_z, s dw + w ds = s_w; border: Theta, M^-1 F, F'M^-1 F."""
-    r_p, r_d, r_f, r_u = rest
-    theta, solved, schur = border
-    h = r_d - x_z / p.x + np.where(q.capped, (s_w - p.w * r_u) / p.s, 0.0)
-    dy = q.normal.solve(r_p + q.normal.A @ (theta * h))
-    free = np.linalg.solve(schur, q.F.T @ dy - r_f) if r_f.size else np.zeros(0)
-    dy = dy - solved @ free
-    dx = theta * (q.normal.At @ dy - h)
-    ds = np.where(q.capped, r_u - dx, 0.0)
-    return _Point(dx, ds, (x_z - p.z * dx) / p.x, np.where(q.capped, (s_w - p.w * ds) / p.s, 0.0), dy, free)
+@dataclass(frozen=True, eq=False)
+class _Newton:
+    """Newton's equations at a point, factorised: Theta, M^-1 F and F'M^-1 F."""
+
+    q: _Programme
+    p: _Point
+    rest: tuple[Array, Array, Array, Array]
+    theta: Array
+    solved: Array
+    schur: Array
+
+    @classmethod
+    def at(cls, q: _Programme, p: _Point, rest: tuple[Array, Array, Array, Array]) -> _Newton:
+        """Factorise; RuntimeError where the matrix is singular."""
+        stiff = p.z / p.x
+        stiff[q.capped] += p.w / p.s
+        theta = 1.0 / stiff
+        q.normal.factorise(theta)
+        solved = np.column_stack([q.normal.solve(f) for f in q.F.T]) if q.F.shape[1] else np.zeros_like(q.F)
+        return cls(q, p, rest, theta, solved, q.F.T @ solved)
+
+    def direction(self, x_z: Array, s_w: Array, *, refined: bool) -> _Point:
+        """Direction with x dz + z dx = x_z, s dw + w ds = s_w; what a predictor decides needs no refinement."""
+        q, p, theta = self.q, self.p, self.theta
+        r_p, r_d, r_f, r_u = self.rest
+        h = r_d - x_z / p.x
+        h[q.capped] += (s_w - p.w * r_u) / p.s
+        solve = q.normal.solve if refined else q.normal.solve_once
+        dy = solve(r_p + product(q.normal.A, theta * h))
+        free = np.zeros(0)
+        if r_f.size:
+            free = np.linalg.solve(self.schur, q.F.T @ dy - r_f)
+            dy -= self.solved @ free
+        dx = theta * (product(q.normal.At, dy) - h)
+        ds = r_u - dx[q.capped]
+        return _Point(dx, ds, (x_z - p.z * dx) / p.x, (s_w - p.w * ds) / p.s, dy, free)
 
 
 def solve_interior(
@@ -227,19 +255,17 @@ def solve_interior(
                 return None
             if max(dual, relative) < PROGRAMME_TARGET and primal < PROGRAMME_ENOUGH:
                 break
-            if since > PATIENCE or iteration == PROGRAMME_ITERATIONS:
+            if since > PATIENCE or iteration == PROGRAMME_ITERATIONS or not gap > 0:
                 break
-            theta = 1.0 / (p.z / p.x + np.where(q.capped, p.w / p.s, 0.0))
             try:
-                q.normal.factorise(theta)
+                newton = _Newton.at(q, p, rest)
             except RuntimeError:
                 break
-            solved = np.column_stack([q.normal.solve(f) for f in q.F.T]) if q.F.shape[1] else np.zeros_like(q.F)
-            border = theta, solved, q.F.T @ solved
-            d = _direction(q, p, rest, border, -p.x * p.z, -p.s * p.w)
+            products = p.x * p.z, p.s * p.w
+            d = newton.direction(-products[0], -products[1], refined=False)
             predicted = q.gap(p.moved(d, *q.steps(p, d)))
             tau = gap / q.count * max((predicted / gap) ** 3, 1e-6)
-            d = _direction(q, p, rest, border, tau - p.x * p.z - d.x * d.z, tau - p.s * p.w - d.s * d.w)
+            d = newton.direction(tau - products[0] - d.x * d.z, tau - products[1] - d.s * d.w, refined=True)
             primal_step, dual_step = (a if a == 1.0 else SHORT_OF_ONE * a for a in q.steps(p, d))
             p = p.moved(d, primal_step, dual_step)
     if kept is None:
