@@ -35,8 +35,8 @@ AGREES = {2: 1e-6, 3: 1e-5}
 """Largest relative difference of alpha_0 by hand and by the program; in space motions come from cone programmes."""
 
 STILL = 10.0
-"""Joints whose sides move along each other by less than this many times ``AGREES``, over the control point, do not slide,
-and those that move apart by less do not open."""
+"""Joints whose sides move along each other by less than this many times ``AGREES``, over the control point, do not
+slide, and those that move apart by less do not open."""
 
 CARRIES = 1e-9
 """Contact forces below this share of the largest are none."""
