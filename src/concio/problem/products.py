@@ -14,7 +14,7 @@ import scipy.sparse as sp
 from scipy.sparse import _sparsetools
 
 Array = np.ndarray
-Compressed = sp.csr_array | sp.csc_array
+Compressed = sp.csr_array | sp.csc_array | sp.csc_matrix
 
 _BY_ROWS: Any = _sparsetools.csr_matvec
 _BY_COLUMNS: Any = _sparsetools.csc_matvec
