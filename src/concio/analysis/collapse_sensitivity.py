@@ -29,7 +29,7 @@ import scipy.sparse.linalg as spl
 from concio.analysis.lent_compliance import lent_assembly
 from concio.analysis.linearised_state import LinearisedState
 from concio.analysis.parameters import Parameter, parameters_of
-from concio.analysis.sensitivity import STEP, Sensitivity, SensitivityRow
+from concio.analysis.sensitivity import STEP, Sensitivity, SensitivityRow, rowless
 from concio.errors import ConcioError, InputError
 from concio.problem.contact_problem import ContactProblem
 from concio.solvers.path.path_state import CRUSHED, OPEN, weakened
@@ -96,9 +96,10 @@ def collapse_sensitivity(found: PathResult) -> Sensitivity | None:
     if y is None or not _alone(state, push, y):
         return None
     top = float(step.factors[groups[0]])
-    rows = [_row(p, state, y, step.factors, broken, top) for p in parameters_of(found.assembly.model, groups)]
+    numbers = parameters_of(found.assembly.model, groups)
+    rows = [_row(p, state, y, step.factors, broken, top) for p in numbers]
     known = sorted((r for r in rows if r is not None), key=lambda r: -abs(r.per_percent[1]))
-    return Sensitivity(top, tuple(known)) if known and top > 0 else None
+    return Sensitivity(top, tuple(known), rowless(numbers, rows, top)) if known and top > 0 else None
 
 
 def _multiplied(found: PathResult) -> list[str]:

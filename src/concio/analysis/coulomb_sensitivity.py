@@ -22,7 +22,7 @@ import numpy as np
 import scipy.linalg
 
 from concio.analysis.parameters import Parameter
-from concio.analysis.sensitivity import LARGEST_NULL_SPACE, STEP, ProblemOf, Sensitivity, SensitivityRow
+from concio.analysis.sensitivity import LARGEST_NULL_SPACE, STEP, ProblemOf, Sensitivity, SensitivityRow, rowless
 from concio.errors import ConcioError, InputError
 from concio.problem.contact_problem import ContactProblem
 from concio.solvers.statics.collapse_state import CollapseState, Motion
@@ -61,8 +61,9 @@ def coulomb_sensitivity(
     virtual = _Virtual.of(problem, push, state)
     if virtual is None:
         return None
-    rows = [r for r in (_row(p, problem_of, virtual) for p in parameters) if r is not None]
-    return Sensitivity(state.multiplier, tuple(sorted(rows, key=lambda r: -abs(r.per_percent[1])))) if rows else None
+    found = [_row(p, problem_of, virtual) for p in parameters]
+    rows = sorted((r for r in found if r is not None), key=lambda r: -abs(r.per_percent[1]))
+    return Sensitivity(state.multiplier, tuple(rows), rowless(parameters, found, state.multiplier)) if rows else None
 
 
 class _Virtual:

@@ -104,10 +104,13 @@ class Sensitivity:
     ----------
     multiplier : float
     rows : tuple of SensitivityRow
+    without : tuple of SensitivityRow
+        Numbers without a derivative: models beside have other joints, or it depends on which motion follows.
     """
 
     multiplier: float
     rows: tuple[SensitivityRow, ...]
+    without: tuple[SensitivityRow, ...] = ()
 
     def __getitem__(self, name: str) -> SensitivityRow:
         """Return the row of a name.
@@ -121,9 +124,14 @@ class Sensitivity:
 
     @property
     def sentence(self) -> str:
-        """The three numbers that matter most, in words."""
+        """The three numbers that matter most, in words; those that are no mirror of it as they fall, for both sides."""
         told = [f"{row.name} {_most(row):+.2g} %" for row in self.rows[:3] if abs(_most(row)) > 5e-4]
-        return "One per cent more of each changes the multiplier by: " + ", ".join(told or ["nothing that shows"])
+        falls = [(row.name, row.per_percent[0]) for row in self.rows[:3] if row.one_sided]
+        less = [f"{name} {change:+.2g} %" for name, change in falls if np.isfinite(change) and abs(change) > 5e-4]
+        more = "One per cent more of each changes the multiplier by: " + ", ".join(told or ["nothing that shows"])
+        none = ", ".join(row.name for row in self.without)
+        falling = "; one per cent less by: " + ", ".join(less) if less else ""
+        return more + falling + (f"; no derivative is known for: {none}" if none else "")
 
     def table(self) -> dict[str, Array]:
         """Return columns: name, value, unit, below, above, percent_below, percent_above."""
@@ -169,7 +177,16 @@ def sensitivity_of(
     others = best.others()
     found = [_row(p, problem_of, best, others) for p in parameters]
     rows = tuple(sorted((r for r in found if r is not None), key=lambda r: -np.nanmax(np.abs((*r.per_percent, 0.0)))))
-    return Sensitivity(limit.multiplier, rows)
+    return Sensitivity(limit.multiplier, rows, rowless(parameters, found, limit.multiplier))
+
+
+def rowless(
+    parameters: Sequence[Parameter], found: Sequence[SensitivityRow | None], multiplier: float
+) -> tuple[SensitivityRow, ...]:
+    """Return rows without derivatives of the parameters for which none was found."""
+    none = float("nan")
+    return tuple(SensitivityRow(p.name, p.kind, p.of, p.value, p.unit, none, none, multiplier)
+                 for p, row in zip(parameters, found, strict=True) if row is None)  # fmt: skip
 
 
 def _row(p: Parameter, problem_of: ProblemOf, here: _Optimum, others: Sequence[_Optimum]) -> SensitivityRow | None:
@@ -205,6 +222,8 @@ def _slope(o: _Optimum, at: Callable[[float], Loaded], value: float, h: float, s
         return float(read[0] - 8 * read[1] + 8 * read[2] - read[3]) / (12 * h)
     except InputError:
         read = [o.lagrangian(*at(value + sign * k * h)) for k in range(5)]
+        if not np.isfinite(read).all():
+            return float("nan")
         return sign * float(np.dot(read, [-25, 48, -36, 16, -3])) / (12 * h)
 
 

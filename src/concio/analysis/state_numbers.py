@@ -121,4 +121,5 @@ def _number(
             for r in found.rows]  # fmt: skip
     known = [r for r in rows if np.isfinite([r.below, r.above]).any()]
     known.sort(key=lambda r: -np.nanmax(np.abs((*r.per_percent, 0.0))))
-    return LeadingNumber(kind, of, value, Sensitivity(value, tuple(known))) if known else None
+    none = tuple(r for r in rows if not np.isfinite([r.below, r.above]).any())
+    return LeadingNumber(kind, of, value, Sensitivity(value, tuple(known), none)) if known else None

@@ -94,7 +94,8 @@ def assess(
         }  # fmt: skip
     if sensitivity is not None:
         told["sensitivity"] = {row.name: {"value": row.value, "below": finite_or_none(row.below),
-                                          "above": finite_or_none(row.above)} for row in sensitivity.rows}  # fmt: skip
+                                          "above": finite_or_none(row.above)}
+                               for row in (*sensitivity.rows, *sensitivity.without)}  # fmt: skip
     if not json:
         answer(assess_lines(found, tie))
         if stronger is not None:

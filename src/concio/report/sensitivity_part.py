@@ -55,6 +55,8 @@ def sensitivity_html(
             told.append(t.words["sens_part"].format(name=name(row), change=f"{'+' * (change > 0)}{t.n(change, 2)}"))
     sides = " " + t.say(f"{of}_sides") if any(row.one_sided for row in found.rows) else ""
     text = t.say("sens_sentence", parts="; ".join(told) or t.words["sens_none"])
+    if found.without:
+        text += " " + t.say("sens_without", parts="; ".join(map(name, found.without)))
     drawn = t.figure(sensitivity_figure(found, t.words[f"{of}_axis"], name), f"figure_{of}", "bars")
     told_of = t.say("sens_text_slides" if slides else f"{of}_text", of=named, value=value)
     return f"<div class=keep><p>{told_of}{sides}</p>{drawn}<p>{text}</p></div>"

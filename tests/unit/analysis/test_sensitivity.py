@@ -168,3 +168,15 @@ def test_optima_that_disagree_on_a_slope_give_one_to_each_side(
     assert row is not None
     wanted = (2.0, 2.0) if same else (-7.0, 7.0)
     assert (row.below * size, row.above * size) == pytest.approx(wanted)
+
+
+def test_a_sentence_tells_both_sides_where_they_differ():
+    """A block that slides and tips at one multiplier: less friction and less width matter, which was not said."""
+    block = concio.column(width=0.5, height=1.0, blocks=1, block="rigid", friction=0.5, horizontal=1.0)
+    found = concio.limit(block, path=False).sensitivity()
+    more, less = found.sentence.split("; one per cent less by: ")
+    assert "length of y -1 %" in more
+    assert "friction of" in less
+    assert "length of x -1 %" in less
+    clear = concio.limit(concio.column(width=0.5, height=1.0, blocks=1, block="rigid", friction=0.9, horizontal=1.0))
+    assert "less" not in clear.sensitivity().sentence
