@@ -263,6 +263,7 @@ def test_the_command_prints_one_object_and_leaves_with_the_verdict(tmp_path: Pat
         ("", ("--settle", "north pier=10 mm"), "not a fixed body"),
         ("", ("--required", "0"), "must be positive"),
         ("", ("--step", "0 m"), "not a distance of positions"),
+        ("", ("--step", "100"), "passes over the worst positions"),
         ("", ("--vehicle", "tank"), "no vehicle 'tank'"),
         ("", ("--apart", "8 m"), "no second vehicle"),
         ("", ("--second", "same"), "needs distances"),

@@ -36,6 +36,8 @@ COARSE = 40
 """Positions of the first grid in the shortest span."""
 FINE = 0.01
 """Distance between positions to which the worst is refined [m]."""
+COARSEST = 20.0
+"""Largest distance of positions, over the usual one: half a span."""
 MOST = 4_000
 """Largest number of positions."""
 APART = 0.05
@@ -213,9 +215,13 @@ def grid(sweep: Sweep, step: float | None = None) -> list[tuple[float, str]]:
     Raises
     ------
     InputError
-        The distance is not positive, or there would be too many.
+        The distance is not positive or more than half a span, or there would be too many.
     """
-    width = sweep.step() if step is None else step
+    usual = sweep.step()
+    width = usual if step is None else step
+    if width > COARSEST * usual:
+        msg = f"a step of {width:g} m passes over the worst positions: usual are {usual:.3g} m, a 40th of a span"
+        raise InputError(msg, hint=f"at most {COARSEST * usual:.3g} m, half a span")
     found = []
     for way in sweep.directions:
         low, high = sweep.reach(way)
