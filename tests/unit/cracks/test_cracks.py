@@ -328,6 +328,15 @@ def test_places_that_were_measured_are_not_to_be_measured_next() -> None:
                     if kind == "opening" and joint == {*m.joint} and np.allclose(at, m.at, atol=1e-3)]  # fmt: skip
 
 
+def test_what_one_cause_leaves_open_at_a_place_is_twice_its_deviation() -> None:
+    """An abutment is where its motion says: two standard deviations of the motion are those of its place."""
+    found = diagnosed(flat_arch(), spread_cracks(0.01), [GIVES])
+    (cause,) = found.causes
+    first = found.places[0]
+    assert (first.kind, first.joint, first.direction) == ("displacement", ("left abutment",), (1.0, 0.0))
+    np.testing.assert_allclose(first.spread, 2.0 * np.sqrt(cause.covariance[0, 0]), rtol=1e-6)
+
+
 def test_a_measurement_in_doubt_is_to_be_measured_again() -> None:
     cracks = spread_cracks(0.01)
     cracks[1] = dataclasses.replace(cracks[1], value=10 * cracks[1].value)

@@ -17,7 +17,7 @@ from concio.analysis.seismic.local_mechanism import LocalMechanism
 from concio.contact.applied import EARTHQUAKE, pushed
 from concio.errors import InputError, NoEquilibriumError
 from samples import sample
-from seismic_walls import HAZARD, bending, overturning, site
+from seismic_walls import HAZARD, bending, courses, ground, overturning, site
 
 OUTER = ("c1", (0.0, 6.0))
 
@@ -116,6 +116,21 @@ def test_crushing_sets_the_hinge_back_by_half_the_crushed_length() -> None:
     assert worst.mechanics.joints[0].set_back == pytest.approx(back)
     assert worst.multiplier == pytest.approx((27.42 - 84.4 * back) / 271.2, abs=1e-12)
     assert worst.mechanics.joints[0].point[0] == pytest.approx(back)
+
+
+@pytest.mark.parametrize("strength", [200.0, 60.0])
+def test_a_joint_that_crushes_as_it_slides_carries_no_force_nearer_to_its_ends(strength: float) -> None:
+    """W = 10 kN on 1 m: half of the crushed length W / f is between each end and the farthest resultant."""
+    wall = courses(1, 0.5, 1.0)
+    law = concio.JointLaw(0.3, compressive_strength=strength)
+    model = concio.Model((ground(), *wall), {"block": concio.Rigid(20.0)}, {"joint": law},
+                         loads=(concio.Load("weight", (0, -1)),))  # fmt: skip
+    worst = concio.assess(model, site=site(), direction="left", knowledge="LC2").worst
+    assert worst is not None
+    assert worst.multiplier == pytest.approx(0.3, rel=1e-9)
+    back = 10.0 / (2 * strength)
+    points = sorted(j.point[0] for j in worst.mechanics.joints if j.kind == "roller")
+    assert points == pytest.approx([back, 1.0 - back], rel=1e-9)
 
 
 def test_the_confidence_factor_without_crushing_is_that_of_least_knowledge() -> None:
@@ -239,8 +254,6 @@ def test_a_table_of_return_periods_gives_the_period_of_the_capacity() -> None:
 @settings(max_examples=sample(2, 5), deadline=None)
 @given(st.floats(2.0, 9.0), st.floats(0.3, 0.9))
 def test_a_wall_alone_topples_at_its_slenderness(height: float, thickness: float) -> None:
-    from seismic_walls import courses, ground
-
     model = concio.Model(
         (ground(), *courses(1, height, thickness)), {"block": concio.Rigid(18.0)}, {"joint": JointLaw(2.0)},
         loads=(Load("weight", (0.0, -1.0)),),
@@ -297,8 +310,6 @@ def test_a_very_strong_site_asks_for_attention() -> None:
 
 
 def test_a_stout_wall_has_no_mechanism_below_two_g() -> None:
-    from seismic_walls import courses, ground
-
     model = concio.Model(
         (ground(-1, 9), *courses(1, 2.0, 5.0)), {"block": concio.Rigid(18.0)}, {"joint": JointLaw(3.0)},
         loads=(Load("weight", (0.0, -1.0)),),

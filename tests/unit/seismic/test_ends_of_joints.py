@@ -77,3 +77,17 @@ def test_spread_forces_keep_their_resultants() -> None:
             assert n[joint].sum() == pytest.approx(t_n[joint].sum(), rel=1e-12)
             assert n[joint] @ at[joint] == pytest.approx(t_n[joint] @ at[joint], abs=1e-12 * t_n[joint].sum())
             assert t[joint].sum() == pytest.approx(t_t[joint].sum(), abs=1e-12 * t_n[joint].sum())
+
+
+@pytest.mark.parametrize("right", [1.0, 0.0])
+def test_a_resultant_close_to_an_end_is_spread_without_overflow(right: float) -> None:
+    """A third pair a hundredth of the joint from its end: pressures fall there by the exponential of hundreds."""
+    share = np.array([0.0, 0.99 if right else 0.01, 0.0])
+    ends = Ends(np.array([True, False, True]), np.array([0, 0, 2]), np.array([0, 2, 2]), share)
+    for off in (1e-3, 2e-4, 1e-4):
+        t_n = 5.0 * np.array([off, 0.0, 1.0 - off] if right else [1.0 - off, 0.0, off])
+        n, _ = ends.spread(t_n, np.zeros((3, 1)))
+        assert np.isfinite(n).all()
+        assert (n >= 0).all()
+        assert n.sum() == pytest.approx(5.0, rel=1e-12)
+        assert n @ np.array([0.0, share[1], 1.0]) == pytest.approx(t_n[2], rel=1e-9)
