@@ -81,7 +81,7 @@ def study(
 
 def study_lines(found: StudyResult, directory: Path) -> list[str]:
     """Return what a study found, in words."""
-    from concio.verdict.study_verdict import WORDS, output_words
+    from concio.verdict.study_verdict import WORDS, output_words, required_words
 
     verdict = found.verdict
     of = "" if len(found) == len(found.sample) else f" of {len(found.sample)}"
@@ -91,6 +91,8 @@ def study_lines(found: StudyResult, directory: Path) -> list[str]:
         lines.append("  stopped early: the stopping criterion was met")
     lines += [f"  {WORDS.get(word, word.replace('_', ' ')):22s} {n}" for word, n in found.verdicts.items()]
     lines += [f"  {o.name:22s} {output_words(found, o)}" for o in found.outputs]
+    index = required_words(found)
+    lines += [f"  required               {index}"] if index else []
     failed = found.failures
     if failed:
         lines.append(f"  {len(failed)} runs have a fault; the first: run {failed[0].index}, {failed[0].message}")

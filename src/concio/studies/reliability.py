@@ -248,7 +248,11 @@ def multiplier_over(
         found = limit(model(values), list(live), path=False, steps=False, search=False, friction=False)
         changes = {name: _changed(model, values, name) for name in values}
         rows = found.sensitivity(changes)
-        rates = {name: next(r for r in rows.rows if r.of == name) for name in values}
+        rates = {r.of: r for r in rows.rows}
+        without = [name for name in values if name not in rates]
+        if without:
+            msg = f"the multiplier has no derivative with respect to '{without[0]}': models beside have other joints"
+            raise InputError(msg, hint="sample it with concio.study")
         slopes = {name: r.above if math.isfinite(r.above) else r.below for name, r in rates.items()}
         return found.associated.multiplier - required, slopes
 

@@ -226,7 +226,12 @@ def correlations(variables: Sequence[Variable], given: Correlation | None) -> di
             if not (isinstance(pair, tuple) and len(pair) == 2):
                 msg = f"correlation: {pair!r} is not a pair of variables"
                 raise InputError(msg, hint=hint)
-        return {(str(a), str(b)): float(value) for (a, b), value in given.items()}
+        found = {(str(a), str(b)): float(value) for (a, b), value in given.items()}
+        for (a, b), value in found.items():
+            if found.get((b, a), value) != value:
+                msg = f"correlation of '{a}' and '{b}' is {value:g}, and of '{b}' and '{a}' {found[b, a]:g}"
+                raise InputError(msg, hint="state each pair once")
+        return found
     try:
         matrix = np.asarray(given, dtype=float)
     except (TypeError, ValueError):

@@ -99,3 +99,37 @@ def test_what_is_no_requirement_is_refused() -> None:
     with pytest.raises(InputError, match="needs a model file"):
         concio.study(lambda _: concio.column(width=0.5, height=2.0, blocks=1), [concio.variable("x", low=0, high=1)],
                      "stands", size=3, required=0.2)  # fmt: skip
+
+
+def test_the_terminal_states_the_index_that_was_asked_for(tmp_path: Path) -> None:
+    """It stood in the report and in --json alone."""
+    (tmp_path / "pillar.toml").write_text(STUDY.replace("size = 40", "size = 3"))
+    asked = ["study", str(tmp_path / "pillar.toml"), "--no-figures", "--out", str(tmp_path / "o")]
+    out = CliRunner().invoke(app, asked)
+    assert "Reliability index 2 (first order)" in out.output
+
+
+def test_a_multiplier_without_derivative_is_told_and_not_a_traceback() -> None:
+    """Blocks that come and go beside the model have no rows of derivatives."""
+
+    def model(values: dict[str, float]) -> concio.Model:
+        count = 2 if values["n"] == 2.0 else 3
+        return concio.column(width=0.5, height=2.0, blocks=count, block="rigid", horizontal=1.0)
+
+    with pytest.raises(InputError, match="no derivative with respect to 'n'"):
+        concio.multiplier_over(model)({"n": 2.0})
+
+
+def test_correlations_that_contradict_each_other_are_refused(tmp_path: Path) -> None:
+    """The last one counted."""
+    variables = [width(), concio.variable("mu", "normal", keys="column.friction", mean=0.9, sd=0.05)]
+    with pytest.raises(InputError, match=r"'width' and 'mu' is 0\.5, and of 'mu' and 'width' -0\.5"):
+        concio.study(PILLAR, variables, "stands", size=3, correlation={("width", "mu"): 0.5, ("mu", "width"): -0.5})
+    text = STUDY + 'distribution = "normal"\n'.join(["[[study.variables]]\nname = \"mu\"\nkeys = \"column.friction\"\n",
+                                                     "mean = 0.9\nsd = 0.05\n"])  # fmt: skip
+    for pair in (["width", "mu"], ["mu", "width"]):
+        text += f"[[study.correlation]]\nbetween = {json.dumps(pair)}\nrank = 0.5\n"
+    (tmp_path / "pillar.toml").write_text(text)
+    out = CliRunner().invoke(app, ["study", str(tmp_path / "pillar.toml"), "--out", str(tmp_path / "o")])
+    assert out.exit_code == 2
+    assert "is stated twice" in out.output

@@ -8,10 +8,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any
 
-from pydantic import Field, StrictInt, StrictStr, ValidationError, model_validator
+from pydantic import Field, StrictInt, StrictStr, ValidationError, field_validator, model_validator
 
 from concio.model.file.file_errors import first_fault
 from concio.model.file.tables import Name, Table
+from concio.model.file.values import fault
 
 Plain = StrictInt | float
 
@@ -138,6 +139,17 @@ class StudyTable(Table):
         if isinstance(data, dict):
             data = {k: [v] if k in ("outputs", "live") and isinstance(v, str) else v for k, v in data.items()}
         return data
+
+    @field_validator("correlation", mode="after")
+    @classmethod
+    def _once(cls, value: list[CorrelationTable]) -> list[CorrelationTable]:
+        """Refuse a pair that is stated twice: the last one would count."""
+        pairs = [frozenset(c.between) for c in value]
+        twice = next((c for c, pair in zip(value, pairs, strict=True) if pairs.count(pair) > 1), None)
+        if twice is not None:
+            msg = f"the correlation of '{twice.between[0]}' and '{twice.between[1]}' is stated twice"
+            raise fault(msg, "state each pair once")
+        return value
 
     @property
     def correlations(self) -> dict[tuple[str, str], float]:
