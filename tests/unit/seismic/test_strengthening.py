@@ -174,3 +174,17 @@ def test_a_file_asks_for_it_and_the_report_shows_before_and_after(tmp_path: Path
     assert "strengthening" in printed
     for word in ("Rinforzo", ">prima<", ">dopo<"):
         assert word in page
+
+
+@pytest.mark.parametrize("kind", ["tie", "mass", "grout"])
+@pytest.mark.parametrize("given", [{"side": "right"}, {"height": 3.0}, {"unit_weight": 24.0}])
+def test_what_belongs_to_a_buttress_is_refused_elsewhere(kind, given):
+    """It was left aside without a word."""
+    with pytest.raises(InputError, match=f"a {kind} has no {next(iter(given))}"):
+        Measure(kind, ("one",), **given)
+
+
+@pytest.mark.parametrize("given", [{"height": -1.0}, {"unit_weight": 0.0}])
+def test_a_buttress_has_positive_sizes(given):
+    with pytest.raises(InputError, match="must be positive"):
+        Measure("buttress", ("one",), **given)

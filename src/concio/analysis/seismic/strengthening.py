@@ -40,6 +40,9 @@ SHARES_OF_LARGEST = (1 / 64, 1 / 32, 1 / 16, 1 / 8, 1 / 4, 1 / 2, 1.0)
 STRONGEST_GROUT = 500.0
 """Largest cohesion of a grouted zone that is tried by default [kN/m2]."""
 
+UNIT_WEIGHT = 20.0
+"""Of a buttress that states none [kN/m3]."""
+
 
 @dataclass(frozen=True)
 class Measure:
@@ -73,7 +76,7 @@ class Measure:
     of: tuple[str, ...]
     side: str = "left"
     height: float | None = None
-    unit_weight: float = 20.0
+    unit_weight: float = UNIT_WEIGHT
     heights: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
@@ -85,6 +88,16 @@ class Measure:
         if self.heights and self.kind != "tie":
             msg = f"a {self.kind} has no heights to choose from"
             raise InputError(msg, hint="heights are those of a tie")
+        own = [("side", self.side != "left"), ("height", self.height is not None),
+               ("unit_weight", self.unit_weight != UNIT_WEIGHT)]  # fmt: skip
+        idle = [name for name, given in own if given and self.kind != "buttress"]
+        if idle:
+            msg = f"a {self.kind} has no {idle[0]}"
+            raise InputError(msg, hint=f"{idle[0]} is that of a buttress: leave it out")
+        for name, value in (("height", self.height), ("unit_weight", self.unit_weight)):
+            if value is not None and not 0 < value < math.inf:
+                msg = f"{name} = {value:g} of a buttress must be positive and finite"
+                raise InputError(msg)
         if self.side not in SIDES:
             msg = f"a buttress has no side '{self.side}'"
             raise InputError(msg, hint=closest(self.side, tuple(SIDES)))
@@ -221,6 +234,9 @@ def strengthen(
     (inf, True)
     """
     most = measure.most(model) if largest is None else largest
+    if not 0 < zeta < math.inf:
+        msg = f"zeta = {zeta:g} must be positive and finite"
+        raise InputError(msg, hint="the value that zeta_E is to reach, such as 1.0")
     if not 0 < most < math.inf:
         msg = f"the largest amount to try, {most:g} {measure.unit}, must be positive"
         raise InputError(msg)
