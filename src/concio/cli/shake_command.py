@@ -69,7 +69,7 @@ def shake(
     Example: concio shake pillar.toml --motion record.at2 --scale 0.3 --out shaken --film gif
     """
     import concio
-    from concio.analysis.motion.continued import goes_on
+    from concio.analysis.motion.continued import goes_on, otherwise
     from concio.analysis.motion.dynamics_result import DynamicsResult, Ending
     from concio.cli.motion_lines import shake_lines, write_motion
     from concio.errors import InputError
@@ -121,11 +121,13 @@ def shake(
         options["restitution"] = restitution
     if point:
         options["points"] = tuple(control_of(text, "x", file, model.dim) for text in point)
+    earlier: DynamicsResult | None = None
     if start is not None:
-        earlier = load_motion(start)
-        if not isinstance(earlier, DynamicsResult):
+        read = load_motion(start)
+        if not isinstance(read, DynamicsResult):
             msg = "this is a push, no motion in time"
             raise InputError(msg, where=str(start), hint="give the motion.npz that shake wrote")
+        earlier = read
         notes += goes_on(earlier.model, model, str(start))
         if options.pop("velocities", None):
             notes.append("the velocities of the file are those of a beginning: this motion goes on with those it had")
@@ -135,6 +137,7 @@ def shake(
             model, ground, scale=factor_of_motion, factors=factors_of(factor), progress=progress,
             **options,
         )  # fmt: skip
+    notes += [] if earlier is None else otherwise(earlier, found)
     found = replace(found, notes=(*found.notes, *notes))
     if not json:
         answer(shake_lines(found))

@@ -161,3 +161,20 @@ def test_a_unit_of_no_record_is_refused(tmp_path, option, value):
     code, _, err = run("shake", path, option, value, "--duration", "0.02 s")
     assert code == 2
     assert "none is given" in err
+
+
+def test_what_a_motion_has_otherwise_than_the_one_before_is_said(tmp_path):
+    """Other load factors, gravity and impacts acted from the end of the earlier motion on without a word."""
+    path = tmp_path / "low.toml"
+    live = '[[loads]]\nkind = "point"\nvalue = [0, -2]\nat = [-0.5, 0.3]\nbodies = ["low"]\ngroup = "live"\n'
+    text = file(["low"]) + live + '[motion]\nstep = "5 ms"\nduration = "0.02 s"\n'
+    path.write_text(text)
+    shaken(path, "-f", "live=3", "--out", tmp_path / "first")
+    begun = ("--from", tmp_path / "first" / "motion.npz")
+    path.write_text(text + "gravity = 5.0\nrestitution = 0.5\n")
+    said = [line for line in shaken(path, *begun)["attention"] if "the earlier motion had" in line]
+    assert said == [
+        "the earlier motion had live x 3, gravity 9.80665 m/s2, restitution 0: what is stated here acts from its end on"
+    ]
+    path.write_text(text)
+    assert not any("earlier motion had" in line for line in shaken(path, *begun, "-f", "live=3")["attention"])

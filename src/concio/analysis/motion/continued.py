@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from concio.analysis.motion.dynamics_result import DynamicsResult
 from concio.analysis.motion.ground_motion import Ground
 from concio.analysis.motion.state import MotionState
 from concio.contact.reference import Reference
@@ -43,6 +44,20 @@ def goes_on(earlier: Model, model: Model, where: str) -> list[str]:
     if dumps(earlier) != dumps(model):
         return ["the model is not that of the earlier motion: what was changed acts from the end of that motion on"]
     return []
+
+
+def otherwise(before: DynamicsResult, now: DynamicsResult) -> list[str]:
+    """Return what a motion has otherwise than the one it goes on from: load factors, gravity, impacts, damping."""
+    groups = dict.fromkeys((*before.factors, *now.factors))
+    told = [f"{g} x {before.factors.get(g, 1.0):g}" for g in groups
+            if before.factors.get(g, 1.0) != now.factors.get(g, 1.0)]  # fmt: skip
+    if before.gravity != now.gravity:
+        told.append(f"gravity {before.gravity:.6g} m/s2")
+    for name in ("restitution", "theta", "mass_damping", "stiffness_damping"):
+        own = getattr(before.scheme, name)
+        if own != getattr(now.scheme, name):
+            told.append(f"{name.replace('_', ' ')} {own:g}")
+    return [f"the earlier motion had {', '.join(told)}: what is stated here acts from its end on"] if told else []
 
 
 def _same(old: Body | Polyhedron, new: Body | Polyhedron, near: float) -> bool:
