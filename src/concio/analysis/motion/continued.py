@@ -7,6 +7,7 @@ import numpy as np
 from concio.analysis.motion.dynamics_result import DynamicsResult
 from concio.analysis.motion.ground_motion import Ground
 from concio.analysis.motion.state import MotionState
+from concio.contact.factors import load_factor
 from concio.contact.reference import Reference
 from concio.errors import InputError
 from concio.model.body import Body
@@ -49,8 +50,8 @@ def goes_on(earlier: Model, model: Model, where: str) -> list[str]:
 def otherwise(before: DynamicsResult, now: DynamicsResult) -> list[str]:
     """Return what a motion has otherwise than the one it goes on from: load factors, gravity, impacts, damping."""
     groups = dict.fromkeys((*before.factors, *now.factors))
-    told = [f"{g} x {before.factors.get(g, 1.0):g}" for g in groups
-            if before.factors.get(g, 1.0) != now.factors.get(g, 1.0)]  # fmt: skip
+    told = [f"{g} x {load_factor(before.factors, g):g}" for g in groups
+            if load_factor(before.factors, g) != load_factor(now.factors, g)]  # fmt: skip
     if before.gravity != now.gravity:
         told.append(f"gravity {before.gravity:.6g} m/s2")
     for name in ("restitution", "theta", "mass_damping", "stiffness_damping"):
