@@ -12,9 +12,8 @@ import numpy as np
 from concio.analysis.collapse_sensitivity import collapse_sensitivity
 from concio.analysis.path_loads import GroupLoad, loads_of_stage
 from concio.analysis.result import Result
-from concio.arguments import closest
 from concio.contact.assembly import Assembly
-from concio.errors import InputError
+from concio.contact.points import check_point, direction_of
 from concio.model.self_weight import weight_groups, weightless
 from concio.model.stages import ControlPoint, Stage
 from concio.problem.certificate import Certificate
@@ -310,18 +309,11 @@ class PathResult(Shown):
 def control_functional(assembly: Assembly, point: ControlPoint) -> tuple[Array, Callable[[Mapping[str, float]], float]]:
     """Return the displacement of a control point as (functional (N,) of the free unknowns, part imposed by factors)."""
     names = [body.name for body in assembly.model.bodies]
-    if point.body not in names:
-        msg = f"there is no body called '{point.body}'"
-        hint = closest(point.body, names, otherwise="see the names with 'concio check'")
-        raise InputError(msg, where="control point", hint=hint)
+    check_point(assembly.model, point, "control point")
     b, disc = names.index(point.body), assembly.disc
-    size = float(np.linalg.norm(point.direction))
-    if not size > 0:
-        msg = f"direction {point.direction} has no length"
-        raise InputError(msg, where="control point", hint="for example (1, 0)")
     unknowns, rows = disc.point_operator(b, np.array(point.at, dtype=float))
     whole = np.zeros(disc.unknowns)
-    whole[unknowns] = np.array(point.direction) / size @ rows
+    whole[unknowns] = direction_of(point, assembly.model.dim) @ rows
     functional: Array = assembly.supported.T.T @ whole
     return functional, lambda factors: float(whole @ assembly.imposed(factors))
 

@@ -11,7 +11,7 @@ import numpy as np
 from concio.arguments import closest
 from concio.errors import InputError
 from concio.fem.discretisation import RIGID
-from concio.kinematics.frames import dot, norm
+from concio.kinematics.frames import dot
 from concio.kinematics.placement import Placement
 from concio.kinematics.rigid import motions, rigid_row, swept
 from concio.kinematics.spins import SpinAxes
@@ -20,6 +20,7 @@ from concio.model.stages import ControlPoint
 
 if TYPE_CHECKING:
     from concio.contact.reference import Reference
+    from concio.model.model import Model
 
 Array = np.ndarray
 
@@ -122,6 +123,46 @@ class MaterialPoints:
         return np.asarray((self.weight[:, :, None] * padded[self.node]).sum(1))
 
 
+AWAY = 1e-6
+"""Share of the size of a model by which a point may lie outside the box around its body."""
+
+
+def check_point(model: Model, point: ControlPoint, where: str) -> None:
+    """Refuse a point that a model does not have.
+
+    Raises
+    ------
+    InputError
+        There is no such body, the numbers are not those of the plane or of space, the direction has no length, or the
+        point lies outside the box around its body: what moves there is not the body.
+    """
+    body = next((b for b in model.bodies if b.name == point.body), None)
+    if body is None:
+        msg = f"there is no body called '{point.body}'"
+        hint = closest(point.body, [b.name for b in model.bodies], otherwise="see the names with 'concio check'")
+        raise InputError(msg, where=where, hint=hint)
+    if len(point.at) != model.dim or not np.isfinite(np.array(point.at, dtype=float)).all():
+        msg = f"the point {point.at} of '{point.body}' is not {model.dim} finite numbers"
+        raise InputError(msg, where=where, hint="x and y, in space also z")
+    if not 2 <= len(point.direction) <= model.dim or not 0 < float(np.linalg.norm(point.direction)) < np.inf:
+        msg = f"direction {point.direction} has no length"
+        raise InputError(msg, where=where, hint="for example (1, 0)")
+    low, high = body.vertices.min(axis=0), body.vertices.max(axis=0)
+    at, near = np.array(point.at, dtype=float), AWAY * model.size
+    if (at < low - near).any() or (at > high + near).any():
+        spans = ", ".join(f"{axis} from {a:.10g} to {b:.10g}" for axis, a, b in zip("xyz", low, high, strict=False))
+        told = ", ".join(f"{x:.10g}" for x in at)
+        msg = f"the point ({told}) m does not lie on '{point.body}'"
+        raise InputError(msg, where=where, hint=f"it has {spans} m")
+
+
+def direction_of(point: ControlPoint, dim: int) -> Array:
+    """Return the unit vector (d,) along which a point is followed; in space one of the plane is horizontal."""
+    along = np.zeros(dim)
+    along[: len(point.direction)] = point.direction
+    return np.asarray(along / np.linalg.norm(along))
+
+
 @dataclass(frozen=True, eq=False)
 class Followed:
     """p points whose displacements are followed, each along its own direction.
@@ -150,18 +191,12 @@ class Followed:
         """
         names = [b.name for b in reference.model.bodies]
         for point in wanted:
-            if point.body not in names:
-                msg = f"there is no body called '{point.body}'"
-                hint = closest(point.body, names, otherwise="see the names with 'concio check'")
-                raise InputError(msg, where="control point", hint=hint)
-            if not 0 < float(np.linalg.norm(point.direction)) < np.inf:
-                msg = f"direction {point.direction} has no length"
-                raise InputError(msg, where="control point", hint="for example (1, 0)")
+            check_point(reference.model, point, "control point")
         place = np.array([p.at for p in wanted], dtype=float).reshape(-1, reference.model.dim)
         bodies = [names.index(p.body) for p in wanted]
         points = MaterialPoints.of(reference, bodies, place)
-        along = np.array([p.direction for p in wanted], dtype=float).reshape(place.shape)
-        return cls(points, place, along / norm(along)[:, None])
+        along = np.array([direction_of(p, place.shape[1]) for p in wanted]).reshape(place.shape)
+        return cls(points, place, along)
 
     def __len__(self) -> int:
         return len(self.start)

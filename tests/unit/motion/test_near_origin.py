@@ -42,10 +42,9 @@ def test_a_model_a_hundred_times_its_size_away_is_computed_near_the_origin(way: 
 
 @pytest.mark.parametrize("origin", [(1000.0, 0.0), (0.0, -2000.0), (300.0, 400.0)])
 def test_points_and_states_go_there_and_back(origin: tuple[float, float]) -> None:
-    model = pillar(0.0, 0.0)
-    near = Near(model, model, np.array(origin))
-    asked = ControlPoint("stone", at=(1001.5, -1998.0))
-    assert near.point(asked).at == pytest.approx((1001.5 - origin[0], -1998.0 - origin[1]))
+    near = Near(pillar(*origin), pillar(0.0, 0.0), np.array(origin))
+    asked = ControlPoint("stone", at=(origin[0] + 0.25, origin[1] + 1.5))
+    assert near.point(asked).at == pytest.approx((0.25, 1.5))
     assert [p.at for p in near.points((asked, asked))] == [near.point(asked).at] * 2
     centre = np.array([[1.0, 2.0], [-3.0, 5.0]])
     assert near.state(State(centre)).centre == pytest.approx(centre - origin)

@@ -14,6 +14,7 @@ from concio.analysis.motion.energy import EnergyBalance
 from concio.analysis.motion.history import Shots, Steps
 from concio.analysis.motion.scheme import Scheme
 from concio.analysis.motion.state import Memory, MotionState
+from concio.contact.points import direction_of
 from concio.contact.reference import Configuration, Reference
 from concio.errors import InputError
 from concio.kinematics.placement import Placement
@@ -148,10 +149,7 @@ class DynamicsResult(Shown):
             msg = f"there is no point number {k}"
             raise InputError(msg, hint="ask for points when the motion is computed: points=(ControlPoint(...),)")
         wanted = self.points[k]
-        direction = np.zeros(self.model.dim)
-        direction[: len(wanted.direction)] = wanted.direction  # along x where none was given, in space too
-        along = direction / np.linalg.norm(direction)
-        moved: Array = (self.steps.point[:, k] - np.array(wanted.at)) @ along
+        moved: Array = (self.steps.point[:, k] - np.array(wanted.at)) @ direction_of(wanted, self.model.dim)
         return moved
 
     def rotation(self, body: str) -> Array:

@@ -16,6 +16,7 @@ import numpy as np
 from concio.analysis.motion.dynamics_result import DynamicsResult
 from concio.analysis.motion.push_result import PushResult
 from concio.analysis.motion.state import MotionState
+from concio.contact.points import check_point
 from concio.contact.reference import Reference
 from concio.model.compose import place
 from concio.model.model import Model, require_model
@@ -63,8 +64,9 @@ class Near:
 
     def point(self, point: ControlPoint) -> ControlPoint:
         """Return a point of the model that is computed."""
-        if not self.origin.any() or len(point.at) != len(self.origin):
+        if not self.origin.any():
             return point
+        check_point(self.described, point, "point")
         return replace(point, at=tuple((np.array(point.at, dtype=float) - self.origin).tolist()))
 
     def points(self, points: Sequence[ControlPoint]) -> tuple[ControlPoint, ...]:

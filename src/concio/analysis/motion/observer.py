@@ -10,12 +10,11 @@ from concio.analysis.motion.state import MotionState
 from concio.analysis.motion.step_pairs import PairMaker
 from concio.analysis.motion.structures import Structure
 from concio.analysis.motion.velocities import Frames
-from concio.contact.points import MaterialPoints
+from concio.contact.points import MaterialPoints, check_point
 from concio.contact.reference import Reference
 from concio.contact.rows import Rows
 from concio.contact.slots import KINDS
 from concio.contact.solid_search import SolidLayout
-from concio.errors import InputError
 from concio.fem.discretisation import FIXED
 from concio.kinematics.frames import norm
 from concio.model.stages import ControlPoint
@@ -53,9 +52,7 @@ class Observer:
         model = reference.model
         number = {b.name: i for i, b in enumerate(model.bodies)}
         for point in points:
-            if point.body not in number:
-                msg = f"there is no body called '{point.body}'"
-                raise InputError(msg, where="point", hint="see the names with 'concio check'")
+            check_point(model, point, "point")
         place = np.array([p.at for p in points], dtype=float).reshape(-1, reference.disc.dim)
         bodies = [number[p.body] for p in points]
         self.points = MaterialPoints.of(reference, bodies, place)
