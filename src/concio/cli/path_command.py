@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -27,8 +28,9 @@ def path(
         str | None, typer.Option("--point", "-p", help="Control point: BODY,X,Y; in space BODY,X,Y,Z.")
     ] = None,
     along: Annotated[
-        Literal["x", "y", "z", "-x", "-y", "-z"], typer.Option("--along", help="Direction of its motion.")
-    ] = "x",
+        Literal["x", "y", "z", "-x", "-y", "-z"] | None,
+        typer.Option("--along", help="Direction of its motion; x by default."),
+    ] = None,
     until: Annotated[
         str | None, typer.Option("--until", help="Displacement of the point at which to stop: 0.02 or '20 mm'.")
     ] = None,
@@ -36,7 +38,9 @@ def path(
         Literal["events", "steps"] | None,
         typer.Option("--method", "-m", help="events (exact, plane models, default) or steps (always in space)."),
     ] = None,
-    steps: Annotated[int, typer.Option("--steps", help="Number of load steps of a stage, with --method steps.")] = 20,
+    steps: Annotated[
+        int | None, typer.Option("--steps", help="Number of load steps of a stage, with --method steps; 20 by default.")
+    ] = None,
     brittle: Annotated[
         bool, typer.Option("--brittle", help="Joints lose tension and cohesion once exceeded (--method steps).")
     ] = False,
@@ -69,20 +73,27 @@ def path(
     if out is not None:
         check_directory(out)
     assembly = concio.assemble(loaded(file, units, engine))
-    control = None if point is None else control_of(point, along, file, assembly.model.dim)
+    if along is not None and point is None:
+        msg = "it is the direction of a control point, and no control point is given"
+        raise InputError(msg, where="--along", hint="add --point BODY,X,Y")
+    if steps is not None and assembly.model.dim == 2 and method != "steps":
+        msg = "the path is followed event by event, which takes no number of steps"
+        raise InputError(msg, where="--steps", hint="add --method steps, or leave it out")
+    control = None if point is None else control_of(point, along or "x", file, assembly.model.dim)
     if control is None and until is not None:
         msg = "it is a displacement of a control point, and no control point is given"
         raise InputError(msg, where="--until", hint="add --point BODY,X,Y")
     wanted = [factors_of(text.split(",")) for text in stage or ()] or [
         {group: 1.0} for group in usual_order(assembly.model, assembly.groups)
     ]
-    stages = [Stage(f"{k}: {_words(factors)}", factors, steps=steps) for k, factors in enumerate(wanted, 1)]
+    stages = [Stage(f"{k}: {_words(factors)}", factors) for k, factors in enumerate(wanted, 1)]
     if not stage and assembly.model.stages:
         stages = list(assembly.model.stages)
         control = control or stages[-1].control
     if until is not None:
-        last = stages[-1]
-        stages[-1] = Stage(last.name, last.factors, control, measured(until, "length", "--until", file), steps)
+        stages[-1] = replace(stages[-1], control=control, until=measured(until, "length", "--until", file))
+    if steps is not None:
+        stages = [replace(one, steps=steps) for one in stages]
     with progress_bar(shown=not json) as progress:
         found = run_path(assembly, stages, method=method, brittle=brittle, progress=progress)
     chosen = control or most_moving(found)

@@ -57,8 +57,9 @@ def push(
         str | None, typer.Option("--point", "-p", help="Control point: BODY,X,Y, in space BODY,X,Y,Z.")
     ] = None,
     along: Annotated[
-        Literal["x", "y", "z", "-x", "-y", "-z"], typer.Option("--along", help="Direction of its motion.")
-    ] = "x",
+        Literal["x", "y", "z", "-x", "-y", "-z"] | None,
+        typer.Option("--along", help="Direction of its motion; x by default."),
+    ] = None,
     load: Annotated[bool, typer.Option("--load", help="Control the load instead of a displacement.")] = False,
     step: Annotated[str | None, typer.Option("--step", help="Largest step: '5 mm', or a multiplier.")] = None,
     until: Annotated[str | None, typer.Option("--until", help="Displacement (or multiplier) at which to stop.")] = None,
@@ -94,13 +95,20 @@ def push(
     if load and point is not None:
         msg = "either the load grows or a point moves"
         raise InputError(msg, where="--load, --point", hint="leave one of them out")
+    if along is not None and point is None:
+        msg = "it is the direction of a control point, and no control point is given"
+        raise InputError(msg, where="--along", hint="add --point BODY,X,Y; --direction is that of the load")
+    if weights and group:
+        msg = "either all weights are multiplied or load groups"
+        raise InputError(msg, where="--weights, --group", hint="leave one of them out")
     model = loaded(file, units, engine)
     kind = "number" if load else "length"
     sizes = [None if t is None else measured(t, kind, w, file) for t, w in ((step, "--step"), (until, "--until"))]
+    control = None if point is None else control_of(point, along or "x", file, model.dim)
     towards = None if direction is None else _direction(direction, model.dim)
     with progress_bar(shown=not json) as progress:
         found = concio.push(
-            model, control="load" if load else None if point is None else control_of(point, along, file, model.dim),
+            model, control="load" if load else control,
             live=() if weights else group or None, direction=towards, step=sizes[0], until=sizes[1], smallest=smallest,
             factors=factors_of(factor), progress=progress,
         )  # fmt: skip

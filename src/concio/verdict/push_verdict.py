@@ -141,10 +141,17 @@ def _question(found: PushResult) -> Question:
         asked, Described(found.reference), found.factors, multiplied=dict.fromkeys(found.live, sign * found.peak)
     )
     if found.live:
-        return question
+        scaled = [_times(one, load_factor(found.factors, one.group)) if one.group in found.live else one
+                  for one in question.acting]  # fmt: skip
+        return replace(question, acting=tuple(scaled))
     force = tuple(found.force.tolist())
     own = Acting(WEIGHTS, _turned(found), force, float(np.linalg.norm(force)), found.peak, "multiplied")
     return Question(question.asked, (*question.acting, own), question.assumptions)
+
+
+def _times(one: Acting, factor: float) -> Acting:
+    """Return a multiplied group with its forces at a multiplier of 1: those of its own factor."""
+    return replace(one, force=tuple(factor * v for v in one.force), size=abs(factor) * one.size)
 
 
 def _control(found: PushResult, value: float) -> str:
