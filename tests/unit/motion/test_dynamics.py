@@ -392,3 +392,17 @@ def test_a_motion_does_not_go_on_in_another_frame():
     assert "moves at 0 m/s from there on" in stopped.notes[0]
     again = concio.dynamics(block, concio.Pulse("sine", 1.0, 0.2), 0.05, 5e-3, gravity=G, start=inertia.end)
     assert not again.notes
+
+
+@pytest.mark.parametrize("shape", ["sine", "half sine", "ricker", "rectangular"])
+def test_a_pulse_is_not_passed_over_by_a_step(shape):
+    """A whole sine of 1 g within a step has the mean zero: a block that falls had "come to rest"."""
+    pulse = concio.Pulse(shape, 9.81, 0.5)
+    with pytest.raises(concio.InputError, match="a quarter of a half wave"):
+        concio.dynamics(standing(), pulse, step=1.001 * pulse.step, gravity=G)
+    coarse, fine = (concio.dynamics(standing(), pulse, step=h, gravity=G) for h in (pulse.step, 0.1 * pulse.step))
+    assert coarse.ending is fine.ending
+    assert coarse.verdict.exit_code == fine.verdict.exit_code
+    peaks = [float(np.abs(found.ground).max()) for found in (coarse, fine)]
+    assert peaks[0] == pytest.approx(9.81, rel=0.35)
+    assert peaks[1] == pytest.approx(9.81, rel=0.02)

@@ -28,13 +28,14 @@ def positive(value: float, name: str) -> float:
 
 
 def step_asked(step: float | None, ground: Ground, duration: float) -> float:
-    """Return the step that was asked for, or the usual one; raise where it is larger than that of the record."""
+    """Return the step that was asked for, or the usual one; raise where the ground would not be seen in it."""
     if step is None:
         return min(STEP, ground.sample, duration)
     step = positive(step, "step")
     if step > ground.sample * (1 + 1e-9):
-        msg = f"the step of {step:g} s is larger than that of the record, {ground.sample:g} s"
-        raise InputError(msg, hint=f"take at most {ground.sample:g} s: what happens between samples would be lost")
+        most = f"that of the record or a quarter of a half wave, {ground.sample:g} s"
+        msg = f"the step of {step:g} s is larger than {most}"
+        raise InputError(msg, hint=f"take at most {ground.sample:g} s: what happens between would be lost")
     return min(step, duration)
 
 

@@ -121,8 +121,8 @@ class Ground:
 
     @property
     def sample(self) -> float:
-        """Least time between samples of a record; infinite where there is none [s]."""
-        return min((s.step for s in (*self.components, *self.turns) if isinstance(s, Record)), default=np.inf)
+        """Least time between samples of a record, or quarter of a half wave of a pulse; infinite without either [s]."""
+        return min((s.step for s in (*self.components, *self.turns) if isinstance(s, Record | Pulse)), default=np.inf)
 
     @property
     def attention(self) -> tuple[str, ...]:

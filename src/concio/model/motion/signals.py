@@ -191,6 +191,11 @@ class Pulse:
         """When it ends [s]."""
         return self.length * {"sine": self.cycles, "ricker": 3.0}.get(self.shape, 1.0)
 
+    @property
+    def step(self) -> float:
+        """Largest step of time in which it is still seen: a quarter of a half wave [s]."""
+        return self.length / (4.0 if self.shape in ("rectangular", "half sine") else 8.0)
+
     def acceleration(self, t: Array) -> Array:
         """Return the acceleration at times t [m/s2]."""
         t = np.asarray(t, dtype=float)
