@@ -265,3 +265,18 @@ def test_a_picture_stands_as_its_camera_says(tmp_path, orientation, kind):
     turned = {1: lambda a: a, 2: np.fliplr, 3: lambda a: np.rot90(a, 2), 4: np.flipud, 5: np.transpose,
               6: lambda a: np.rot90(a, -1), 7: lambda a: np.rot90(a, 2).T, 8: np.rot90}[orientation]  # fmt: skip
     assert found == pytest.approx(turned(stored) / 255.0, abs=0.03)
+
+
+def test_pieces_of_a_block_are_not_lost() -> None:
+    """The outline was that of the largest piece: a quarter of a square metre of stone was missing."""
+    labels = np.repeat(np.repeat([[1, 2], [3, 4]], 20, axis=0), 30, axis=1)
+    photo = Photo(np.zeros((40, 60)), 0.01)
+    labels[30:, 50:] = 1
+    with pytest.raises(InputError, match="block 1 is in 2 pieces, of 600, 100 pixels"):
+        trace_labels(labels, photo)
+    labels[30:, 50:] = 5
+    areas = [b.area for b in trace_labels(labels, photo).model().free_bodies]
+    assert sum(areas) == pytest.approx(0.24)
+    labels[10, 10] = 6
+    with pytest.raises(InputError, match="block 6 is too small for an outline"):
+        trace_labels(labels, photo).model()

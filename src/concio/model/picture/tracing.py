@@ -172,6 +172,11 @@ class Tracing:
             Further fields of :class:`concio.Model`.
         """
         rings = self.outlines(tolerance)
+        lost = sorted(set(np.unique(self.labels[self.labels > 0]).tolist()) - rings.keys())
+        if lost:
+            others = f", and {len(lost) - 1} more" if len(lost) > 1 else ""
+            msg = f"block {lost[0]} is too small for an outline{others}"
+            raise InputError(msg, hint="join it to a neighbour, set it to 0, or take a smaller tolerance")
         width = len(str(len(rings)))
         bodies = [
             Body(f"s{k:0{width}d}", ring, "stone", kind="rigid", thickness=thickness)
@@ -213,7 +218,7 @@ def trace_labels(labels: Array, photo: Photo) -> Tracing:
     Raises
     ------
     InputError
-        The sizes differ, or there is no block.
+        The sizes differ, there is no block, or a block is in several pieces.
 
     Examples
     --------
@@ -227,5 +232,20 @@ def trace_labels(labels: Array, photo: Photo) -> Tracing:
     if own.shape != photo.grey.shape or not np.issubdtype(own.dtype, np.integer) or not (own > 0).any():
         msg = f"labels of shape {own.shape} and type {own.dtype} for a picture of {photo.grey.shape}"
         raise InputError(msg, hint="give whole numbers of the size of the picture, above 0 for blocks")
-    return Tracing(own.astype(np.int32), photo)
+    own = own.astype(np.int32)
+    _refuse_pieces(own)
+    return Tracing(own, photo)
+
+
+def _refuse_pieces(labels: Array) -> None:
+    """Refuse a block that is in several pieces: its outline is that of the largest one."""
+    numbers = np.unique(labels[labels > 0]).tolist()
+    order = np.searchsorted(numbers, np.maximum(labels, 0)) + 1
+    for k, part in zip(numbers, ndimage.find_objects(np.where(labels > 0, order, 0)), strict=True):
+        pieces, count = ndimage.label(labels[part] == k)
+        if count > 1:
+            sizes = sorted(np.bincount(pieces.ravel())[1:].tolist(), reverse=True)
+            msg = f"block {k} is in {count} pieces, of {', '.join(map(str, sizes[:3]))} pixels"
+            hint = "give each piece a number of its own, join it to a neighbour, or set it to 0"
+            raise InputError(msg, where="labels", hint=hint)
 
