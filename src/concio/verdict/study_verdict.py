@@ -180,6 +180,12 @@ def _bounds(study: StudyResult) -> tuple[str, ...]:
     found = [f"{o.name} is the {o.meaning}" for o in study.outputs if "bound" in o.meaning]
     if study.required is not None and study.required.index is not None:
         found.append("the reliability index is that of the associated multiplier, an upper bound where joints slide")
+    names = [o.name for o in study.outputs if o.multiplies]
+    if study.settings is not None and (names or study.required is not None):
+        own = {g: load_factor(study.settings.factors, g) for g in study.settings.live}
+        told = ", ".join([*names, *(["the required multiplier"] if study.required is not None else [])])
+        found += [f"the factor {number(f)} of '{g}' does not act on {told}: the loads of the file are multiplied"
+                  for g, f in own.items() if f != 1.0]  # fmt: skip
     return tuple(found)
 
 

@@ -133,3 +133,12 @@ def test_correlations_that_contradict_each_other_are_refused(tmp_path: Path) -> 
     out = CliRunner().invoke(app, ["study", str(tmp_path / "pillar.toml"), "--out", str(tmp_path / "o")])
     assert out.exit_code == 2
     assert "is stated twice" in out.output
+
+
+@pytest.mark.parametrize("factor", [1.0, 2.0])
+def test_a_factor_of_what_is_multiplied_does_not_act_and_is_told(factor: float) -> None:
+    """The same multipliers with and without a factor of the live group, and not a word of it."""
+    found = concio.study(PILLAR, [width()], "associated_multiplier", size=3, factors={"live": factor})
+    assert found.values("associated_multiplier") == pytest.approx(found.values("width") / HEIGHT, rel=1e-9)
+    told = [line for line in found.verdict.limits if "does not act on associated_multiplier" in line]
+    assert len(told) == (factor != 1.0)
