@@ -181,3 +181,11 @@ def test_values_of_one_record_may_stand_several_on_a_line(tmp_path):
     path = tmp_path / "record.txt"
     path.write_text("# five on a line\n0.1 0.3 0.2 0.1 0.5\n0.2 0.1 0.4 0.1 0.2\n0.3 0.2\n")
     assert concio.read_record(path, unit="m/s2", step=0.01).duration == pytest.approx(0.11)
+
+
+def test_a_record_of_velocities_that_does_not_begin_at_rest_gets_an_attention():
+    """Forces of inertia and a base that moves answer differently: one block slid right, the other left."""
+    said = attention(concio.Record(np.array([0.3, 0.2, 0.0]), 0.01, "velocity", "cut"))
+    assert said is not None
+    assert "'cut' begins with a velocity of 0.3 m/s" in said
+    assert attention(concio.Record(np.array([0.01, 0.3, 0.0]), 0.01, "velocity")) is None

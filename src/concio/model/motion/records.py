@@ -35,6 +35,9 @@ PEER: dict[str, str] = {".at2": "g", ".vt2": "cm/s", ".dt2": "cm"}
 LARGEST = 5.0
 """Peak acceleration in g from which on a record is probably in another unit."""
 
+BEGINS = 0.05
+"""Share of its peak above which a record of velocities does not begin at rest."""
+
 UNEVEN = 1e-3
 """Share by which steps of time may differ."""
 
@@ -145,13 +148,19 @@ def _unit_of_peer(text: str, suffix: str, where: str, given: str | None) -> str:
 
 
 def attention(signal: Record | Pulse) -> str | None:
-    """Return what is strange about a record or a pulse: a peak that suggests another unit; None where nothing is."""
+    """Return what is strange about a record or a pulse: a peak that suggests another unit, a beginning in motion."""
     if isinstance(signal, Pulse):
         peak = abs(signal.amplitude) / STANDARD_GRAVITY
         if peak <= LARGEST:
             return None
         return f"the {signal.shape} pulse has a peak of {peak:.3g} g, more than any earthquake: is that its unit?"
     record = signal
+    if record.quantity == "velocity" and abs(record.values[0]) > BEGINS * float(np.abs(record.values).max()):
+        speed = f"{record.values[0]:.3g} m/s"
+        return (
+            f"record '{record.name}' begins with a velocity of {speed}: is it cut? Forces of inertia leave that out, a "
+            "base that moves has it at once"
+        )
     if record.quantity != "acceleration":
         return None
     peak = float(np.abs(record.values).max()) / STANDARD_GRAVITY
