@@ -144,7 +144,10 @@ def check_point(model: Model, point: ControlPoint, where: str) -> None:
     if len(point.at) != model.dim or not np.isfinite(np.array(point.at, dtype=float)).all():
         msg = f"the point {point.at} of '{point.body}' is not {model.dim} finite numbers"
         raise InputError(msg, where=where, hint="x and y, in space also z")
-    if not 2 <= len(point.direction) <= model.dim or not 0 < float(np.linalg.norm(point.direction)) < np.inf:
+    if not 2 <= len(point.direction) <= model.dim:
+        msg = f"direction {point.direction} is not {model.dim} numbers"
+        raise InputError(msg, where=where, hint="for example (1, 0), in space (1, 0, 0)")
+    if not 0 < float(np.linalg.norm(point.direction)) < np.inf:
         msg = f"direction {point.direction} has no length"
         raise InputError(msg, where=where, hint="for example (1, 0)")
     low, high = body.vertices.min(axis=0), body.vertices.max(axis=0)

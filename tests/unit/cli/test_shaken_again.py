@@ -178,3 +178,13 @@ def test_what_a_motion_has_otherwise_than_the_one_before_is_said(tmp_path):
     ]
     path.write_text(text)
     assert not any("earlier motion had" in line for line in shaken(path, *begun, "-f", "live=3")["attention"])
+
+
+@pytest.mark.parametrize("key", ['unit = "g"', 'record_step = "10 ms"'])
+def test_a_unit_of_no_record_in_a_file_is_refused(tmp_path, key):
+    path = tmp_path / "low.toml"
+    pulse = 'pulse = { shape = "sine", amplitude = "0.1 g", length = "0.1 s" }\n'
+    path.write_text(file(["low"]) + "[motion]\n" + pulse + key + "\n")
+    code, _, err = run("shake", path, "--duration", "0.02 s")
+    assert code == 2
+    assert "no record is named" in err

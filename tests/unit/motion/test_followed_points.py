@@ -18,6 +18,7 @@ BAD = [
     ({"at": (0.0, 0.5, 0.0)}, "is not 2 finite numbers"),
     ({"at": (0.0, np.nan)}, "is not 2 finite numbers"),
     ({"at": (0.0, 0.5), "direction": (0.0, 0.0)}, "has no length"),
+    ({"at": (0.0, 0.5), "direction": (0.0, 0.0, 1.0)}, "is not 2 numbers"),
     ({"at": (0.0, 5.0)}, r"the point \(0, 5\) m does not lie on"),
 ]
 

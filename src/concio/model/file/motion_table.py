@@ -175,6 +175,10 @@ class MotionTable(Table):
         if self.record is not None and self.pulse is not None:
             msg = "there is a record and a pulse along x"
             raise InputError(msg, where="[motion]", hint="keep one of them")
+        idle = [key for key in ("unit", "record_step") if getattr(self, key) is not None]
+        if idle and self.record is self.transverse is self.vertical is None:
+            msg = f"{idle[0]} is that of records, and no record is named"
+            raise InputError(msg, where="[motion]", hint="name the record, or leave it out")
         found: dict[str, Pulse | Record] = {}
         for axis, name in records_by_axis(self.record, self.transverse, self.vertical, dim, "[motion]"):
             if name is not None:
