@@ -100,3 +100,12 @@ def test_supports_are_said_by_true_or_one(tmp_path, said, kind):
 def test_what_is_not_understood_is_refused(tmp_path, data, words):
     with pytest.raises(InputError, match=words):
         read(tmp_path, element(mesh(), **data))
+
+
+def test_features_of_an_element_are_not_passed_over(tmp_path):
+    """A block with a cut was read as it is without."""
+    cut = element(mesh(), transformation=None, features=[{"dtype": "compas_model.elements/Cut", "data": {}}])
+    with pytest.raises(GeometryError, match="has features, which are not applied"):
+        read(tmp_path, [cut, mesh()])
+    assert len(read(tmp_path, [cut, mesh()], on_fault="skip").bodies) == 1
+    assert len(read(tmp_path, element(mesh(), transformation=None, features=[])).bodies) == 1

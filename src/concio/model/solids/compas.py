@@ -138,6 +138,10 @@ def _shapes(data: Any, where: str) -> Iterator[Shape]:
             hint = "write it as a mesh, each cell as one of its own"
             yield Shape(inside.name, "", np.zeros((0, 3)), (), inside.fixed, unreadable=(what, hint))
             continue
+        if thing.get("features") and "transformation" in thing:
+            what, hint = "has features, which are not applied to its geometry", "write its geometry with them"
+            yield Shape(inside.name, "", np.zeros((0, 3)), (), inside.fixed, unreadable=(what, hint))
+            continue
         if kind == "Box":
             yield _box(thing, inside, where)
             continue
