@@ -112,7 +112,7 @@ def test_the_report_tells_every_datum_that_was_given_and_has_no_english_in_itali
 @pytest.mark.long
 def test_a_vehicle_without_axles_is_told_by_its_load_along_the_road() -> None:
     model = concio.with_vehicle(small(), concio.find_vehicle("SW/0"))
-    found = concio.assess_bridge(model, step=4.0, fine=2.0, worst=1, checked=1, sensitivity=False)
+    found = concio.assess_bridge(model, step=1.0, fine=1.0, worst=1, checked=1, sensitivity=False)
     told = " ".join(bridge_lines(found))
     assert "133 kN/m along the road, no axles" in told
     assert "1995" not in told
