@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import concio
-from concio.analysis.seismic.hand_check import HandCheck, HandRow
+from concio.analysis.seismic.hand_check import AGREES, HandCheck, HandRow
 from concio.kinematics.frames import turned_left
 from concio.kinematics.rigid import motions
 from concio.report.assessment_texts import Texts
@@ -138,6 +138,9 @@ def _hand(t: Texts, found: Assessment, head: Head) -> str:
                 if head.full or k == 0 or o.section is None or not c.agrees]  # fmt: skip
         names = [t.words[k] for k in ("name", "direction", "a_by_program", "a_by_hand", "a_difference")]
         parts.append(f"<p>{t.say('a_all')}</p>{t.table(names, rows, 2)}")
+    stuck = max(c.left_open for c in found.hand_checks)
+    if stuck > min(AGREES.values()):
+        parts.append(f"<p>{t.say('a_stuck', stuck=t.n(stuck, 1))}</p>")
     return "".join(parts)
 
 

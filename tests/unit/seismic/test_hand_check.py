@@ -142,6 +142,8 @@ def test_the_check_by_hand_of_the_facade_of_the_examples_agrees() -> None:
     assert any(check.part("load") for check in found.hand_checks)
     assert any(check.part("joint") for check in found.hand_checks)
     assert all(check.agrees for check in found.hand_checks)
+    assert 1e-6 < max(check.left_open for check in found.hand_checks) < 1e-3
+    assert "Friction of joints that stick leaves up to" in AssessmentReport(found).html()
 
 
 def test_volumes_of_blocks_in_space_are_sums_of_tetrahedra() -> None:

@@ -130,10 +130,14 @@ class HandCheck:
         return abs(self.alpha - self.program) / max(abs(self.program), 1e-12)
 
     @property
+    def left_open(self) -> float:
+        """What ``stuck`` is of alpha_0, relative to that of the program."""
+        return self.stuck / max(abs(self.pushes * self.program), 1e-12)
+
+    @property
     def agrees(self) -> bool:
         """Whether both are the same, and the motion is one that the joints allow."""
-        most = AGREES[self.dim] + self.stuck / max(abs(self.pushes * self.program), 1e-12)
-        return self.difference <= most and self.open <= STILL * AGREES[self.dim]
+        return self.difference <= AGREES[self.dim] + self.left_open and self.open <= STILL * AGREES[self.dim]
 
     def part(self, kind: str) -> tuple[HandRow, ...]:
         """Return the rows of a kind."""
