@@ -72,7 +72,7 @@ def crossed() -> object:
     bridge = concio.bridge(span=3.0, rise=0.75, ring=0.3, voussoirs=8, block="rigid", unit_weight=22.0, friction=0.6)
     vehicle = Vehicle("one axle", (Axle(0.0, 10.0),))
     model = with_vehicle(with_fill(bridge, Fill(cover=0.3, unit_weight=20.0)), vehicle)
-    return concio.assess_bridge(model, step=3.0, fine=1.0, worst=1, checked=1, sensitivity=False)
+    return concio.assess_bridge(model, step=1.5, fine=1.0, worst=1, checked=1, sensitivity=False)
 
 
 STAGES = [concio.Stage("dead", {"dead": 1.0}), concio.Stage("push", {"live": 1.0})]
