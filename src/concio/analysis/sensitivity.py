@@ -125,11 +125,11 @@ class Sensitivity:
     @property
     def sentence(self) -> str:
         """The three numbers that matter most, in words; those that are no mirror of it as they fall, for both sides."""
-        told = [f"{row.name} {_most(row):+.2g} %" for row in self.rows[:3] if abs(_most(row)) > 5e-4]
-        falls = [(row.name, row.per_percent[0]) for row in self.rows[:3] if row.one_sided]
+        told = [f"{_words(row)} {_most(row):+.2g} %" for row in self.rows[:3] if abs(_most(row)) > 5e-4]
+        falls = [(_words(row), row.per_percent[0]) for row in self.rows[:3] if row.one_sided]
         less = [f"{name} {change:+.2g} %" for name, change in falls if np.isfinite(change) and abs(change) > 5e-4]
         more = "One per cent more of each changes the multiplier by: " + ", ".join(told or ["nothing that shows"])
-        none = ", ".join(row.name for row in self.without)
+        none = ", ".join(_words(row) for row in self.without)
         falling = "; one per cent less by: " + ", ".join(less) if less else ""
         return more + falling + (f"; no derivative is known for: {none}" if none else "")
 
@@ -142,6 +142,11 @@ class Sensitivity:
             "above": np.array([row.above for row in self.rows]), "percent_below": shares[:, 0],
             "percent_above": shares[:, 1],
         }  # fmt: skip
+
+
+def _words(row: SensitivityRow) -> str:
+    """Return what is changed, in words: a length is that of everything along an axis."""
+    return f"all lengths along {row.of}" if row.kind == "length" else row.name
 
 
 def _most(row: SensitivityRow) -> float:

@@ -175,8 +175,8 @@ def test_a_sentence_tells_both_sides_where_they_differ():
     block = concio.column(width=0.5, height=1.0, blocks=1, block="rigid", friction=0.5, horizontal=1.0)
     found = concio.limit(block, path=False).sensitivity()
     more, less = found.sentence.split("; one per cent less by: ")
-    assert "length of y -1 %" in more
+    assert "all lengths along y -1 %" in more
     assert "friction of" in less
-    assert "length of x -1 %" in less
+    assert "all lengths along x -1 %" in less
     clear = concio.limit(concio.column(width=0.5, height=1.0, blocks=1, block="rigid", friction=0.9, horizontal=1.0))
     assert "less" not in clear.sensitivity().sentence

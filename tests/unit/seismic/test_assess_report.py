@@ -189,5 +189,6 @@ def test_the_console_says_what_alpha_0_depends_on_or_why_it_has_no_derivatives(t
         lines[friction, asked] = [line.split(maxsplit=2)[2] for line in shown.splitlines() if "  depends on " in line]
     (refused,), (told,) = lines[0.05, "true"], lines[0.9, "true"]
     assert refused.startswith("no derivatives: in the weakest mechanism joints slide under pressure in space")
-    assert told.startswith("One per cent more of each changes the multiplier by: length of y +1 %, length of z -1 %")
+    start = "One per cent more of each changes the multiplier by: all lengths along y +1 %, all lengths along z -1 %"
+    assert told.startswith(start)
     assert lines[0.05, "false"] == []
