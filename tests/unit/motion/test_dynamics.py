@@ -394,7 +394,10 @@ def test_a_motion_does_not_go_on_in_another_frame():
     assert not again.notes
 
 
-@pytest.mark.parametrize("shape", ["half sine", "rectangular", *(pytest.param(word, marks=pytest.mark.long) for word in ("sine", "ricker"))])
+LONG = [pytest.param(shape, marks=pytest.mark.long) for shape in ("sine", "ricker")]
+
+
+@pytest.mark.parametrize("shape", ["half sine", "rectangular", *LONG])
 def test_a_pulse_is_not_passed_over_by_a_step(shape):
     """A whole sine of 1 g within a step has the mean zero: a block that falls had "come to rest"."""
     pulse = concio.Pulse(shape, 9.81, 0.5)
