@@ -189,13 +189,14 @@ def _groups(root: Any, elements: dict[str, Any], place: _Place, where: str) -> d
 
 def _box(thing: dict[str, Any], at_place: _Place, where: str) -> Shape:
     """Return a box of COMPAS: sizes about the origin of its frame."""
-    data = thing.get("data")
+    held = thing.get("data")
+    data: dict[str, Any] = held if isinstance(held, dict) else {}
     try:
-        sizes = [float(data[key]) for key in ("xsize", "ysize", "zsize")]  # type: ignore[index]
+        sizes = [float(data[key]) for key in ("xsize", "ysize", "zsize")]
     except (KeyError, TypeError, ValueError):
         msg = "a box has no xsize, ysize and zsize"
         raise InputError(msg, where=where, hint="write the model again with compas.json_dump") from None
-    own = _frame(data.get("frame"), where)  # type: ignore[union-attr]
+    own = _frame(data.get("frame"), where)
     corners = np.array([[x, y, z] for z in (-0.5, 0.5) for y in (-0.5, 0.5) for x in (-0.5, 0.5)]) * sizes
     if own is not None:
         corners = corners @ own[:3, :3].T + own[:3, 3]
