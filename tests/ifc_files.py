@@ -13,12 +13,16 @@ METRE, MILLIMETRE = "IFCSIUNIT(*,.LENGTHUNIT.,$,.METRE.)", "IFCSIUNIT(*,.LENGTHU
 class IfcText:
     """Instances of a file in the making; each method adds some and returns the reference to the last."""
 
-    def __init__(self, unit: str = METRE, schema: str = "IFC4") -> None:
+    def __init__(self, unit: str = METRE, schema: str = "IFC4", world: Sequence[Sequence[float]] = ()) -> None:
         self.lines: list[str] = []
         self.schema = schema
         self.identifiers = 0
         units = self.add(f"IFCUNITASSIGNMENT(({self.add(unit)}))") if unit else "$"
-        self.project = self.add(f"IFCPROJECT({self.identifier()},$,'P',$,$,$,$,$,{units})")
+        contexts = "$"
+        if world:
+            context = f"IFCGEOMETRICREPRESENTATIONCONTEXT($,'Model',3,1.E-05,{self.axes(*world)},$)"
+            contexts = f"({self.add(context)})"
+        self.project = self.add(f"IFCPROJECT({self.identifier()},$,'P',$,$,$,$,{contexts},{units})")
         self.storey = self.add(f"IFCBUILDINGSTOREY({self.identifier()},$,'Level 1',$,$,$,$,$,.ELEMENT.,0.)")
 
     def add(self, text: str) -> str:

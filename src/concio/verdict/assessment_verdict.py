@@ -15,7 +15,7 @@ from concio.problem.limits_of_work import MOST_SLIDING
 from concio.verdict.assessment_notes import assessment_notes
 from concio.verdict.assessment_words import WORDS
 from concio.verdict.attention import attention_of, joints_not_made
-from concio.verdict.question import Question, thickness_words
+from concio.verdict.question import Question, other_stages, thickness_words
 from concio.verdict.verdict import Outcome, Verdict
 
 if TYPE_CHECKING:
@@ -164,7 +164,7 @@ class _Words:
         return Verdict(
             outcome=outcome,
             status=STATUS[outcome],
-            question=Question(asked, found.acting, thickness_words(found.model)),
+            question=Question(asked, found.acting, (*thickness_words(found.model), *other_stages(found.model))),
             headline=self.headline(outcome),
             answer=self.answer(outcome),
             proof=self.proof(),

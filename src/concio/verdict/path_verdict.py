@@ -114,6 +114,7 @@ def _question(found: PathResult) -> Question:
         multiplied={g: load.end for g, load in last.items()} | {g: v for g, v in factors.items() if g in last},
         wanted={g: load.asked for g, load in last.items()},
         applied=applied,
+        stages=found.stages,
     )
 
 

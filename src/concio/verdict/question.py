@@ -16,12 +16,15 @@ from concio.fem.discretisation import RIGID, Discretisation
 from concio.model.actions import Support
 from concio.model.body import Body
 from concio.model.model import Model
+from concio.model.stages import Stage
 
 Role = Literal["constant", "multiplied", "not applied"]
 
 DEFAULT_THICKNESS = 1.0
 """Thickness of a plane body where none is given [m]."""
 MOST_THICKNESSES = 3
+MOST_STAGES = 4
+"""More stages than this are not named where they are not followed."""
 
 GIVEN = 15
 """Digits of a factor that was given: near a limit the seventh decides between two answers."""
@@ -161,6 +164,7 @@ def question_of(
     multiplied: Mapping[str, float] | Iterable[str] = (),
     wanted: Mapping[str, float] | None = None,
     applied: Iterable[str] | None = None,
+    stages: Iterable[Stage] = (),
 ) -> Question:
     """Return a question about an assembly, with the forces of every load group.
 
@@ -176,6 +180,8 @@ def question_of(
         Factors that were asked for of multiplied groups.
     applied : names, optional
         Groups that are applied at all; by default every one.
+    stages : iterable of Stage, optional
+        Stages that are followed; by default none.
     """
     reached = dict(multiplied) if isinstance(multiplied, Mapping) else dict.fromkeys(multiplied, math.nan)
     named = None if applied is None else {*applied, *reached}
@@ -189,7 +195,8 @@ def question_of(
         else:
             factor = load_factor(factors, group)
             acting.append(replace(one, factor=factor, role="constant" if factor else "not applied"))
-    return Question(asked, tuple(acting), thickness_words(assembly.model))
+    assumptions = (*thickness_words(assembly.model), *other_stages(assembly.model, stages))
+    return Question(asked, tuple(acting), assumptions)
 
 
 def acting_groups(assembly: Loaded) -> tuple[Acting, ...]:
@@ -247,6 +254,21 @@ def thickness_words(model: Model) -> tuple[str, ...]:
         return (f"thickness {DEFAULT_THICKNESS:g} m, the default where none is given",)
     shown = ", ".join(f"{v:g}" for v in depths[:MOST_THICKNESSES]) + (" ..." if len(depths) > MOST_THICKNESSES else "")
     return (f"thickness {shown} m",)
+
+
+def other_stages(model: Model, followed: Iterable[Stage] = ()) -> tuple[str, ...]:
+    """Return in a sentence that stages of a model are not those that are followed; none where they are, or of a cell.
+
+    Parameters
+    ----------
+    model : Model
+    followed : iterable of Stage, optional
+    """
+    own = model.stages
+    if not own or model.periods is not None or [*map(repr, own)] == [*map(repr, followed)]:
+        return ()
+    names = ", ".join(f"'{stage.name}'" for stage in own[:MOST_STAGES]) + (" ..." if len(own) > MOST_STAGES else "")
+    return (f"the stages of the model are not followed, nor do their factors act: {names}; 'concio path' follows them",)
 
 
 def resultants(assembly: Loaded) -> dict[str, list[float]]:

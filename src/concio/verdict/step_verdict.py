@@ -32,6 +32,8 @@ FORCED = 1e-2
 """Share of the largest displacement that an added compliance takes up where rigid blocks are forced together; of blocks
 that can move aside it takes up a share that falls with the compliance added, some 1e-4."""
 
+ON_PATH = "path"
+"""Method of a result that is a state of a load path."""
 MOST_REACTIONS = 4
 """More reactions than this are counted in a short text."""
 
@@ -54,9 +56,11 @@ def step_verdict(result: Result) -> Verdict:
     result : Result
     """
     words, status = WORDS[result.status], result.status
+    on_path = result.method == ON_PATH
     question = question_of(
-        "equilibrium under the loads that act, in one step from rest", result.assembly, result.factors
-    )
+        f"equilibrium under the loads that act, {'at a state of a load path' if on_path else 'in one step from rest'}",
+        result.assembly, result.factors, stages=result.model.stages if on_path else (),
+    )  # fmt: skip
     odd = (*attention(result.assembly), *_noticed(result), *broken_words(result))
     first = [f"{line[0].upper()}{line[1:]}." for line in odd]
     open_ = unseen(result.assembly, result.factors) if result.solved else ()

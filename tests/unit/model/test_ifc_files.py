@@ -14,6 +14,7 @@ from concio import GeometryError, InputError, Polyhedron
 from concio.contact.detection import detect
 from concio.model.polyhedron import BOX
 from concio.model.solids.step_file import decoded
+from concio.verdict.attention import attention_of
 from ifc_files import MILLIMETRE, IfcText, row
 
 CUBE = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], dtype=float)
@@ -307,3 +308,30 @@ def test_an_opening_in_what_a_product_is_part_of_is_not_passed_over(tmp_path: Pa
     file.relate("IFCRELVOIDSELEMENT", wall, window)
     with pytest.raises(GeometryError, match=rf"is part of {wall} IFCWALL, which has an opening, {window}"):
         read(file, tmp_path)
+
+
+WORLDS = {
+    "at the origin": (((0, 0, 0),), None),
+    "far away": (((4500.0, 1200.0, 30.0),), r"at \(4500, 1200, 30\) .*turned by 0 degrees"),
+    "turned": (((0, 0, 0), (0, 0, 1), (0, 1, 0)), r"turned by 90 degrees about z"),
+}
+
+
+@pytest.mark.parametrize("world", WORLDS)
+def test_a_coordinate_system_of_the_project_is_not_left_out_without_a_word(tmp_path: Path, world: str) -> None:
+    at, said = WORLDS[world]
+    f = IfcText(world=at)
+    f.product("stone", f.brep(CUBE, BOX))
+    model = read(f, tmp_path)
+    assert np.allclose(model.bodies[0].vertices.min(0), 0.0)
+    told = [line for line in attention_of(model, detect(model)) if "world coordinate system" in line]
+    assert len(told) == (0 if said is None else 1)
+    assert said is None or re.search(said, told[0])
+
+
+def test_a_coordinate_system_that_lies_on_its_side_is_refused(tmp_path: Path) -> None:
+    """Where z of the project is horizontal, gravity would act along another direction than the author meant."""
+    f = IfcText(world=((0, 0, 0), (1, 0, 0), (0, 0, 1)))
+    f.product("stone", f.brep(CUBE, BOX))
+    with pytest.raises(InputError, match=r"z axis is not upright"):
+        read(f, tmp_path)

@@ -104,3 +104,39 @@ def test_layers_that_were_ignored_are_told(command: str, tmp_path: Path) -> None
     told: dict[str, Any] = json.loads(out)
     line = "the drawing: 1 thing left out, first: 1 LINE on layer 'QUOTE 2', which is ignored"
     assert line in told["attention"]
+
+
+SINKS = DEFAULT + '[[supports]]\nname = "sinks"\nbody = "floor"\ndisplacement = [0.0, -0.001]\n'
+STAGES = """
+[[stages]]
+name = "by itself"
+factors = { dead = 1.0 }
+[[stages]]
+name = "lean"
+factors = { live = 0.5 }
+"""
+ONCE = [c for c in IN_PLANE if c != "path"]
+"""Commands that apply loads at once, or multiply them."""
+
+
+@pytest.mark.parametrize("command", first(3, ONCE))
+def test_stages_that_are_not_followed_are_told_with_the_question(command: str, tmp_path: Path) -> None:
+    """A file whose stages put on half of a load was answered with all of it, without a word on the stages."""
+    path = tmp_path / "staged.toml"
+    path.write_text(DEFAULT + STAGES + {"assess": SITE, "study": STUDY}.get(command, ""))
+    told = json.loads(run(command, path, *ASKS[command][1], "--json")[1])["verdict"]
+    assert "stages of the model are not followed" in json.dumps(told["question"])
+    assert "'by itself', 'lean'" in json.dumps(told["question"])
+
+
+def test_stages_that_are_followed_are_those_of_the_question() -> None:
+    """Other stages are told; a state of a path is called that, and not one step from rest."""
+    model = concio.loads(DEFAULT + STAGES)
+    path, other = concio.run_path(model), concio.run_path(model, [concio.Stage("all", {"dead": 1.0, "live": 1.0})])
+    known = [" ".join(found.verdict.question.assumptions) for found in (path, other)]
+    assert ["not followed" in text for text in known] == [False, True]
+    state = path.result().verdict.question
+    assert "a state of a load path" in state.asked
+    assert "not followed" not in " ".join(state.assumptions)
+    settled = concio.settle(concio.loads(SINKS + STAGES))
+    assert "not followed" in " ".join(settled.verdict.question.assumptions)

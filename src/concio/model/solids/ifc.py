@@ -14,7 +14,7 @@ import numpy as np
 
 from concio.errors import InputError
 from concio.model.solids.ifc_geometry import TESSELLATE, Bodies, Surface, moved
-from concio.model.solids.ifc_placement import Placements, metres_of
+from concio.model.solids.ifc_placement import Placements, metres_of, world_left_out
 from concio.model.solids.shapes import FIXED, Scene, Shape, check_size
 from concio.model.solids.step_file import Instance, Reference, StepFile
 
@@ -56,7 +56,7 @@ def _scene(file: StepFile) -> Scene:
     metres = metres_of(file)
     openings = {r.value(4): r.value(5) for r in file.of_kind("IFCRELVOIDSELEMENT")}
     shapes: list[Shape] = []
-    left_out: list[str] = []
+    left_out = world_left_out(file)
     total = 0
     for number in file.roots():
         kind = file.kind(number)

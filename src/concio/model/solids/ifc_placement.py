@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from concio.kinematics.frames import cross
@@ -46,6 +48,40 @@ def _metres(unit: Instance) -> float | None:
         factor *= float(number)
         unit = measure.instance(1)
     return unit.refuse("is defined by itself: the unit of length cannot be converted")
+
+
+def world_left_out(file: StepFile) -> list[str]:
+    """Return in a sentence each coordinate system in space of the project that is not the identity, which is left out.
+
+    Placements of products are not moved by it: readers of IFC differ in whether it moves them.
+
+    Raises
+    ------
+    InputError
+        Its z axis is not upright: the direction of gravity in the file is open.
+    """
+    found: list[str] = []
+    for context in _contexts(file):
+        matrix = axes(context.open_instance(4))
+        if abs(matrix[2, 2] - 1.0) > PARALLEL:
+            what = "has a world coordinate system whose z axis is not upright: where gravity acts is open"
+            context.refuse(what, "export the model with z upwards and without a coordinate system of its own")
+        if not np.allclose(matrix, np.eye(4), rtol=0.0, atol=PARALLEL):
+            at = ", ".join(f"{v:g}" for v in matrix[:3, 3])
+            turned = np.rad2deg(np.arctan2(matrix[1, 0], matrix[0, 0]))
+            found.append(
+                f"the world coordinate system of {context.label}, at ({at}) in units of the file and turned by "
+                f"{turned:.4g} degrees about z: coordinates and directions are those of the placements of the products"
+            )
+    return found
+
+
+def _contexts(file: StepFile) -> Iterator[Instance]:
+    """Yield the representation contexts of the projects in space."""
+    for project in file.of_kind("IFCPROJECT"):
+        for context in project.instances(7) if project.value(7) is not None else ():
+            if context.kind == "IFCGEOMETRICREPRESENTATIONCONTEXT" and context.value(2) == 3:
+                yield context
 
 
 def point(at: Instance, dim: int = 3) -> list[float]:
