@@ -35,6 +35,7 @@ from concio.analysis.margin_of import MarginOf
 from concio.analysis.tie_forces import without_breakable
 from concio.arguments import closest, strict
 from concio.contact.assembly import Assembly, as_assembly
+from concio.contact.factors import once
 from concio.errors import InputError, NoEquilibriumError
 from concio.model.model import Model
 from concio.problem.contact_problem import ContactProblem
@@ -154,12 +155,13 @@ def limit_stages(
     """
     assembly = lent_assembly(model)
     dead, load = dead_and_live(assembly, live)
-    groups = (live,) if isinstance(live, str) else tuple(live)
+    groups = live_groups(assembly, live)
     tell = _telling(progress)
     tell("associated bound")
     mechanism = find_mechanism(dead)
     if mechanism is not None:
-        hint = "solve the model with the live load factor 0 and look at it"
+        zero = ", ".join(f"'{group}': 0" for group in groups)
+        hint = f"solve the model with factors={{{zero}}} and look at it"
         asked = "the largest multiplier"
         told = not_standing(assembly, asked, DEAD_NOT_CARRIED, multiplied=groups)
         raise NoEquilibriumError(of_the_joints(DEAD_NOT_CARRIED, assembly.detection), hint=hint, verdict=told)
@@ -326,7 +328,7 @@ def live_groups(assembly: Assembly, live: str | Sequence[str] | None) -> tuple[s
     """Return the names of live groups; by default the group "live" where there is one."""
     if live is None:
         return (LIVE,) if LIVE in assembly.groups else ()
-    return (live,) if isinstance(live, str) else tuple(live)
+    return once(live)
 
 
 def factored_problem(assembly: Assembly, live: str | Sequence[str] | None, factor: float) -> ContactProblem:

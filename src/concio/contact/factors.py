@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from concio.contact.macroscopic_strain import STRAINS
 
@@ -18,3 +18,13 @@ def load_factor(factors: Mapping[str, float] | None, group: str) -> float:
     """
     usual = 0.0 if group in STRAINS else 1.0
     return usual if factors is None else float(factors.get(group, usual))
+
+
+def once(groups: str | Sequence[str]) -> tuple[str, ...]:
+    """Return load groups of which one may be given by its name alone, each once.
+
+    Parameters
+    ----------
+    groups : str or sequence of str
+    """
+    return (groups,) if isinstance(groups, str) else tuple(dict.fromkeys(groups))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 
@@ -15,6 +15,13 @@ from concio.units import quantity
 Face = Literal["lower", "upper", "left", "right", "both"]
 FACES: tuple[str, ...] = get_args(Face)
 """Faces of a joint that a load along it may act on."""
+def _measured(value: Any, kind: str, where: str) -> Any:
+    """Return a number or a sequence of numbers of which those that are texts were converted to base units."""
+    if isinstance(value, str):
+        return quantity(value, kind, where=where)
+    return value if np.ndim(value) == 0 else tuple(_measured(v, kind, where) for v in value)
+
+
 Point = tuple[float, ...]
 """A point or a vector with as many coordinates as the model has dimensions."""
 
@@ -36,9 +43,10 @@ class Support:
     directions : str
         Any of "x", "y" and, in space, "z"; or "all".
     displacement : (ux, uy) or (ux, uy, uz)
-        Imposed displacement [m]; empty is none.
+        Imposed displacement [m]; empty is none. It has no component along a direction that is not held.
     rotation : float, or (rx, ry, rz) in space
-        Imposed rotation about the body's centroid, fixed and rigid bodies only [rad].
+        Imposed rotation about the body's centroid, fixed and rigid bodies only [rad]. Texts with units, ``"2 mm"`` and
+        ``"1 deg"``, are converted.
     group : str
         Load group that scales the imposed displacement.
     polygon : tuple of points, or None
@@ -69,6 +77,11 @@ class Support:
     rotation: float | Point = 0.0
     group: str = "settlement"
     polygon: tuple[Point, ...] | None = None
+
+    def __post_init__(self) -> None:
+        where = f"support '{self.name}'"
+        object.__setattr__(self, "displacement", _measured(self.displacement, "length", where))
+        object.__setattr__(self, "rotation", _measured(self.rotation, "angle", where))
 
     @property
     def moves(self) -> bool:

@@ -82,6 +82,7 @@ class Vehicle:
         Length of the contact of a wheel along the road, or of a sleeper [m].
     width : float or str
         Width over the wheels, or length of a sleeper [m].
+        A spread rule takes the narrowest of all axles.
     direction : {"right", "left", "both"}
         Direction of travel; a search that is to try both takes "both", and a position then looks to the right.
     dynamic : float
@@ -157,6 +158,11 @@ class Vehicle:
     def uniform(self) -> tuple[float, ...]:
         """Load per length of each stretch of uniform load, without factors [kN/m]."""
         return tuple(a.load / a.length for a in self.axles if a.length is not None and a.length >= STRETCH)
+
+    @property
+    def narrowest(self) -> float:
+        """Least width over the wheels of its axles and stretches of uniform load [m]."""
+        return min(self.width if axle.width is None else axle.width for axle in self.axles)
 
     @property
     def heaviest(self) -> Axle:

@@ -82,12 +82,26 @@ def _support(support: Support, dim: int) -> Support:
     turned = _numbers(rotation, turns, "rotation", where, dim)
     moved = _numbers(support.displacement or np.zeros(dim), dim, "displacement", where, dim)
     _region(support, where, dim)
+    held = AXES[:dim] if support.directions == "all" else support.directions
+    _moves_what_it_holds(held, moved, where)
     return replace(
         support,
-        directions=AXES[:dim] if support.directions == "all" else support.directions,
+        directions=held,
         displacement=moved,
         rotation=turned[0] if dim == 2 else turned,
     )
+
+
+def _moves_what_it_holds(held: str, moved: tuple[float, ...], where: str) -> None:
+    """Refuse directions that are none, and a displacement along one that the support does not hold."""
+    known = AXES[: len(moved)]
+    if not held or set(held) - set(known):
+        msg = f"directions '{held}' are not made of '{known}'"
+        raise InputError(msg, where=where)
+    free = [axis for axis, value in zip(known, moved, strict=True) if value and axis not in held]
+    if free:
+        msg = f"a displacement along {' and '.join(free)} is imposed, but it holds only '{held}'"
+        raise InputError(msg, where=where, hint=f"directions = '{''.join(sorted({*held, *free}))}' holds what is moved")
 
 
 def _load(load: Load, dim: int) -> Load:

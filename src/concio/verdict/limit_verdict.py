@@ -22,7 +22,7 @@ from concio.verdict.verdict import Outcome, Verdict
 if TYPE_CHECKING:
     from concio.analysis.limit_result import LimitResult
 
-DEAD_NOT_CARRIED = "the dead load alone cannot be carried: a mechanism proves it"
+DEAD_NOT_CARRIED = "the constant loads alone cannot be carried: a mechanism proves it"
 """What the exception of a limit load says where no forces balance the loads that are not multiplied."""
 
 MOST_TIES = 5

@@ -138,7 +138,8 @@ def solving_line(name: str, margin: Margin) -> str:
     """Return what bisection with solved load steps found, in words."""
     head = f"  {name + ', by solving':21s}"
     if margin.holds != margin.holds:
-        return f"{head}no equilibrium was found with {'friction' if name == 'friction' else 'dead load'} as given"
+        given = "friction" if name == "friction" else "the constant loads"
+        return f"{head}no equilibrium was found with {given} as given"
     if margin.holds == float("inf"):
         return f"{head}no load bounds it"
     found = f"{head}a certified Coulomb equilibrium at {margin.holds:.6g} times what is given"
@@ -153,7 +154,7 @@ def step_lines(found: LimitResult) -> list[str]:
     if not steps.multipliers:
         alone = found.dead or steps.dead
         said = "is not carried" if alone in PROVEN_FAILURES else "reached no certified state"
-        return [f"{head}none: the dead load alone {said} ({alone.name.lower()})"]
+        return [f"{head}none: under the constant loads alone it {said} ({alone.name.lower()})"]
     if found.associated.locked and steps.state is None:
         said = (
             "is carried, and so is every other" if found.endless else "is not carried "
@@ -161,7 +162,7 @@ def step_lines(found: LimitResult) -> list[str]:
         )
         return [f"{head}1 times it {said}: nothing else acts, and all multiples are equal"]
     tried = "" if math.isnan(steps.failed) else f"; none found at {steps.failed:.6g}"
-    count = f"{len(steps.multipliers)} certified states from the dead load on"
+    count = f"{len(steps.multipliers)} certified states from the constant loads on"
     return [f"{head}carried up to {steps.carried:.6g} at least: {count}{tried}"]
 
 
@@ -195,7 +196,7 @@ def spread_lines(found: LimitResult) -> list[str]:
     above = "" if math.isnan(steps.failed) else f", {found.spread.not_reached:.6g} not reached"
     said = (
         "carried up to "
-        f"{found.spread.carried:.6g}{above}" if steps.multipliers else "none: the dead load reached no certified state"
+        f"{found.spread.carried:.6g}{above}" if steps.multipliers else "none: no certified state of the constant loads"
     )
     if not n:
         return [f"  pressure spread      {said}, in finer steps, less the overestimate in joints that twist"]

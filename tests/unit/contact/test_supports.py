@@ -218,3 +218,26 @@ def test_a_support_that_moves_by_next_to_nothing_forces_nothing_together(power: 
     assert np.abs(found.displacement).max() <= 2.0 * angle
     assert found.displacement.any() == (power > -28)
     assert found.solution.normal_force == pytest.approx(still.solution.normal_force, rel=1e-6)
+
+
+@pytest.mark.parametrize("body", ["block", "ground"])
+@pytest.mark.parametrize(("held", "moved"), [("x", (0.0, -0.002)), ("y", (0.001, 0.0)), ("y", (0.001, -0.002))])
+def test_a_movement_along_a_direction_that_is_not_held_is_refused(
+    body: str, held: str, moved: tuple[float, float]
+) -> None:
+    """A settlement of 2 mm of a support that holds along x alone was left aside, and the block was in equilibrium."""
+    pillar = concio.column(width=0.5, height=1.0, blocks=1, block="rigid", unit_weight=20.0)
+    names = {"block": "b01", "ground": "ground"}
+    support = concio.Support("moved", names[body], directions=held, displacement=moved)
+    with pytest.raises(InputError, match=rf"it holds only '{held}' \(directions = 'xy' holds what is moved\)"):
+        replace(pillar, supports=(support,))
+
+
+def test_movements_in_texts_are_those_in_metres_and_radians() -> None:
+    texts = concio.Support("s", "b", displacement=("1 mm", "-0.2 cm"), rotation="1 deg")
+    assert texts.displacement == pytest.approx((0.001, -0.002))
+    assert texts.rotation == pytest.approx(np.deg2rad(1.0))
+    space = concio.Support("s", "b", displacement=("1 mm", 0.0, 0.0), rotation=("1 deg", 0.0, "0.02 rad"))
+    assert space.rotation == pytest.approx((np.deg2rad(1.0), 0.0, 0.02))
+    with pytest.raises(InputError, match="is not a length"):
+        concio.Support("s", "b", displacement=("1 kN", 0.0))

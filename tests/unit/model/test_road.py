@@ -247,6 +247,22 @@ def test_the_width_of_the_rule_is_that_of_the_vehicle_that_crosses(vehicle: str,
     assert concio.loads(concio.dumps(model)).fill == model.fill
 
 
+RULE = (
+    "[bridge]\nspan = 3.0\nrise = 0.75\nring = 0.215\nvoussoirs = 16\nblock = 'rigid'\nwidth = 9.0\n"
+    "[fill]\ncover = 0.4\nspread = 'uniform 1:2'\nwidth = 'rule'\n"
+)
+
+
+def test_the_width_of_the_rule_is_that_of_the_narrowest_axle() -> None:
+    """A width of an axle of its own was left aside, and that of a second vehicle: the first decided alone."""
+    own = concio.loads(f"{RULE}[vehicle]\naxles = [{{ at = 0.0, load = 90.0, width = 0.6 }}, [1.3, 90.0]]\n")
+    assert own.bodies[0].thickness == pytest.approx(0.6 + 0.4)
+    wide, narrow = (concio.find_vehicle(name) for name in ("LM71", "single axle"))
+    for one, other in ((wide, narrow), (narrow, wide)):
+        both = concio.with_vehicle(concio.loads(RULE), convoy(one, [(other, 8.0)]))
+        assert both.bodies[0].thickness == pytest.approx(1.8 + 0.4)
+
+
 def test_spandrel_walls_take_their_share_of_width_and_weigh_with_their_parapets() -> None:
     bare, walled = (covered(Fill(cover=0.3, unit_weight=20.0, passive=1.0, **more))  # type: ignore[arg-type]
                     for more in ({}, {"spandrels": 0.4, "spandrel_weight": 22.0, "parapet": 1.0}))  # fmt: skip

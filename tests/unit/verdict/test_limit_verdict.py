@@ -387,3 +387,19 @@ def test_a_bound_that_was_not_found_is_no_proof(monkeypatch: pytest.MonkeyPatch)
     assert "nan" not in said
     assert "is in balance" not in said
     assert any("at most the bound without them; once they are broken" in line for line in found.verdict.limits)
+
+
+def test_loads_that_are_not_multiplied_are_not_called_the_dead_load() -> None:
+    """Where 'dead' is multiplied, what cannot be carried alone is the push: it was called "the dead load"."""
+    leaning = concio.column(width=0.5, height=1.0, blocks=1, block="rigid", unit_weight=20.0, horizontal=0.1)
+    with pytest.raises(concio.NoEquilibriumError, match=r"the constant loads alone .*factors=\{'dead': 0\}") as caught:
+        concio.limit(leaning, "dead")
+    assert caught.value.verdict is not None
+    assert "dead load" not in caught.value.verdict.answer
+
+
+def test_a_group_that_is_named_twice_is_named_once() -> None:
+    leaning = concio.column(width=0.5, height=1.0, blocks=1, block="rigid", unit_weight=20.0, horizontal=0.1)
+    found = concio.limit(leaning, ["live", "live"])
+    assert found.groups == ("live",)
+    assert concio.push(leaning, live=("live", "live")).live == ("live",)

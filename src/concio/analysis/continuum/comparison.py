@@ -31,6 +31,7 @@ from concio.analysis.limit import LIVE, limit
 from concio.analysis.step import solve
 from concio.arguments import closest, strict
 from concio.contact.assembly import Assembly, as_assembly
+from concio.contact.factors import once
 from concio.errors import InputError
 from concio.model.model import Model
 from concio.problem.solution import Progress, ProgressCallback
@@ -232,7 +233,7 @@ def _mesh_size(assembly: Assembly, given: float | None) -> float:
 def _groups(assembly: Assembly, live: str | Sequence[str] | None) -> tuple[str, ...]:
     if live is None:
         return (LIVE,) if LIVE in assembly.groups else ()
-    return (live,) if isinstance(live, str) else tuple(live)
+    return once(live)
 
 
 def _told(progress: ProgressCallback | None, k: int, note: str) -> None:

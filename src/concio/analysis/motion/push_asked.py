@@ -10,7 +10,7 @@ from concio.analysis.motion.scheme import Scheme
 from concio.analysis.motion.statics import Balanced
 from concio.analysis.motion.velocities import Frames
 from concio.arguments import closest
-from concio.contact.factors import load_factor
+from concio.contact.factors import load_factor, once
 from concio.contact.reference import Reference
 from concio.errors import InputError
 from concio.model.stages import ControlPoint
@@ -71,7 +71,7 @@ def live_asked(reference: Reference, live: str | Sequence[str] | None) -> tuple[
     known = list(reference.model.load_groups)
     if live is None:
         return (LIVE,) if LIVE in known else ()
-    wanted = (live,) if isinstance(live, str) else tuple(live)
+    wanted = once(live)
     for group in wanted:
         if group not in known:
             msg = f"there is no load group '{group}'"

@@ -24,6 +24,7 @@ from concio.analysis.seismic.tie_history import with_strength
 from concio.analysis.seismic.weakest_mechanism import chosen_bodies
 from concio.arguments import closest, strict
 from concio.contact.assembly import assemble
+from concio.contact.factors import once
 from concio.errors import InputError, NoEquilibriumError
 from concio.model.model import Model, require_model
 from concio.problem.solution import ProgressCallback
@@ -155,7 +156,7 @@ def assess(
             msg = f"a largest displacement of {value:g} m must be positive"
             raise InputError(msg, where=f"limit of {level}")
     factor, reason = _confidence(model, rules.tables["knowledge"], knowledge, confidence)
-    groups = (live,) if isinstance(live, str) else tuple(live) if live is not None else ()
+    groups = once(live if live is not None else ())
     sought = {EVERY: (), **(mechanisms or {})}
     elements = elements_of(free_standing or {}, tuple(sought), rules)
     known = tuple(dict.fromkeys(load.group for load in model.loads))

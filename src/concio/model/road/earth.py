@@ -241,7 +241,7 @@ def width_used(model: Model, fill: Fill, vehicle: Vehicle | None = None) -> tupl
         surface = Surface.of(model)
         crown = surface.crown
         depth = float(Road.of(fill, surface).height(crown[:1])[0] - crown[1])
-        wide = rule.width_at(1.8 if vehicle is None else vehicle.width, depth)
+        wide = rule.width_at(1.8 if vehicle is None else vehicle.narrowest, depth)
         if wide < full:
             return wide, f"that of the rule '{rule.name}' at the depth of {depth:.3g} m below the road"
         return full, f"the whole width of the bodies: the rule '{rule.name}' gives {wide:.3g} m"

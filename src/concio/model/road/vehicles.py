@@ -103,7 +103,8 @@ def convoy(vehicle: Vehicle, others: Sequence[tuple[Vehicle, float]]) -> Vehicle
         ratio = other.dynamic * other.factor / (vehicle.dynamic * vehicle.factor)
         for axle in other.axles:
             length = other.footprint if axle.length is None and other.footprint != vehicle.footprint else axle.length
-            axles.append(replace(axle, at=axle.at + distance, load=axle.load * ratio, length=length))
+            width = other.width if axle.width is None and other.width != vehicle.width else axle.width
+            axles.append(replace(axle, at=axle.at + distance, load=axle.load * ratio, length=length, width=width))
     name = " + ".join([vehicle.name, *(f"{other.name} at {distance:g} m" for other, distance in others)])
     sources = "; ".join(dict.fromkeys(v.source for v in (vehicle, *(o for o, _ in others)) if v.source))
     return replace(vehicle, name=name, axles=tuple(axles), source=sources)
