@@ -20,7 +20,8 @@ from concio.verdict.question import Question, question_of
 from concio.verdict.verdict import Outcome, Verdict
 
 if TYPE_CHECKING:
-    from concio.analysis.bridges.bridge_result import BridgeResult
+    from concio.analysis.bridges.bridge_result import BridgeResult, Coulomb
+    from concio.analysis.bridges.sweep import Standing
 
 ASKED = "the load factor of a vehicle at every position on a bridge"
 DEAD_NOT_STANDING = "the bridge does not stand without the vehicle: a mechanism proves it"
@@ -104,8 +105,9 @@ def bridge_lines(found: BridgeResult) -> list[str]:
     lines = [found.model.title or "bridge without a title", verdict.sentence, *verdict.lines(units, most=8)]
     lines.append(f"  proof        {verdict.proof}")
     bare = replace(vehicle, dynamic=1.0, factor=1.0)
-    axle, _ = heaviest_words(bare, found.design / found.required, Words("en", units))
-    lines.append(f"  permissible  {axle} for the load factor {number(found.required, 4)}")
+    if not math.isnan(found.design):
+        axle, _ = heaviest_words(bare, found.design / found.required, Words("en", units))
+        lines.append(f"  permissible  {axle} for the load factor {number(found.required, 4)}")
     for b in found.brackets:
         s = b.standing
         lines.append(
@@ -203,11 +205,13 @@ def _answer(found: BridgeResult, outcome: Outcome, w: Words) -> str:
         "x": w.unit("length", worst.position, 4), "way": w.say(worst.direction),
         "bound": w.n(worst.multiplier, 5), "bound_axle": heaviest_words(vehicle, worst.multiplier, w)[1],
     }  # fmt: skip
-    if math.isnan(found.design):
+    at_worst = next((b.limit.design for b in found.brackets if _place(b.standing) == _place(worst)), math.nan)
+    if math.isnan(at_worst):
         told.append(w.say("worst_unknown", **known))
     else:
-        design, axle = w.n(found.design, 5), heaviest_words(vehicle, found.design, w)[0]
-        told.append(w.say("worst", design=design, axle=axle, **known))
+        told.append(w.say("worst", design=w.n(at_worst, 5), axle=heaviest_words(vehicle, at_worst, w)[0], **known))
+    if not math.isnan(found.design) and found.design != at_worst:
+        told.append(_least(found, w))
     if found.without_soil is None:
         told.append(w.say("no_soil_none"))
     elif any(t.kind == "soil" for t in found.model.ties):
@@ -215,6 +219,18 @@ def _answer(found: BridgeResult, outcome: Outcome, w: Words) -> str:
         told.append(w.say("no_soil", multiplier=w.n(less.multiplier, 5),
                         x=w.unit("length", less.position, 4)))  # fmt: skip
     return " ".join(told)
+
+
+def _place(at: Standing | Coulomb) -> tuple[float, str]:
+    """Return position, without rounding noise, and direction."""
+    return round(at.position, 9), at.direction
+
+
+def _least(found: BridgeResult, w: Words) -> str:
+    """Return where Coulomb friction was shown to carry least, where that is not the position of the least bound."""
+    b = next(b for b in found.brackets if b.limit.design == found.design)
+    return w.say("less", design=w.n(found.design, 5), axle=heaviest_words(found.vehicle, found.design, w)[0],
+                 x=w.unit("length", b.standing.position, 4), way=w.say(b.standing.direction))  # fmt: skip
 
 
 def _rests(found: BridgeResult, outcome: Outcome, w: Words) -> tuple[str, ...]:
@@ -271,6 +287,10 @@ def _limits(found: BridgeResult, w: Words) -> tuple[str, ...]:
 
 def _unchecked(found: BridgeResult, w: Words) -> tuple[str, ...]:
     told = [] if found.coulomb else [w.say("unchecked_coulomb")]
+    known = {_place(c) for c in found.coulomb}
+    rest = sum(_place(s) not in known for s in found.standings)
+    if found.coulomb and rest:
+        told.append(w.say("unchecked_some", rest=rest, all=len(found.standings)))
     if not _crush(found):
         told.append(w.say("unchecked_crushing"))
     told.append(w.say("unchecked_long"))

@@ -39,6 +39,8 @@ ENGLISH: Mapping[str, str] = {
     "and no equilibrium exists beyond {bound} times ({bound_axle}).",
     "worst_unknown": "Worst is x = {x}, travelling to the {way}: no equilibrium exists beyond {bound} times it "
     "there ({bound_axle}); the part that Coulomb friction carries was not found.",
+    "less": "The least that Coulomb friction was shown to carry is {design} times it, {axle}, at x = {x}, travelling "
+    "to the {way}.",
     "no_soil": "Without the pressure of the soil the bound is {multiplier} times, at x = {x}.",
     "no_soil_none": "Without the pressure of the soil the bridge does not stand even without a vehicle.",
     "rests": "the answer depends on the pressure of the soil: without it no equilibrium exists beyond {multiplier} "
@@ -58,6 +60,7 @@ ENGLISH: Mapping[str, str] = {
     "spandrels": "spandrel walls count by their weight alone",
     "brackets": "what Coulomb friction carries at most was sought at {count} positions only",
     "unchecked_coulomb": "Coulomb friction at the other positions (asked for at none)",
+    "unchecked_some": "Coulomb friction at {rest} of {all} positions: there the bound alone was computed",
     "unchecked_crushing": "crushing: the joints have no compressive strength",
     "unchecked_long": "the abutments and the ground: fixed blocks carry whatever reaches them",
     "unchecked_both": "the vehicle in the other direction",
@@ -99,6 +102,8 @@ ITALIAN: Mapping[str, str] = {
     "veicolo, {axle}, e oltre {bound} volte ({bound_axle}) non esiste equilibrio.",
     "worst_unknown": "La posizione peggiore è x = {x}, con marcia verso {way}: oltre {bound} volte il veicolo "
     "({bound_axle}) non esiste equilibrio; la parte sostenuta con attrito di Coulomb non è stata trovata.",
+    "less": "Il minimo che l'attrito di Coulomb porta, per quanto mostrato, è {design} volte il veicolo, {axle}, in "
+    "x = {x}, con marcia verso {way}.",
     "no_soil": "Senza la spinta del terreno il limite è {multiplier} volte, in x = {x}.",
     "no_soil_none": "Senza la spinta del terreno il ponte non sta in piedi neppure senza veicolo.",
     "rests": "la risposta dipende dalla spinta del terreno: senza di essa non esiste equilibrio oltre {multiplier} "
@@ -118,6 +123,7 @@ ITALIAN: Mapping[str, str] = {
     "spandrels": "i timpani contano solo con il loro peso",
     "brackets": "quanto porta al massimo l'attrito di Coulomb è stato cercato solo in {count} posizioni",
     "unchecked_coulomb": "l'attrito di Coulomb nelle altre posizioni (non chiesto in alcuna)",
+    "unchecked_some": "l'attrito di Coulomb in {rest} di {all} posizioni: lì è stato calcolato solo il limite",
     "unchecked_crushing": "lo schiacciamento: i giunti non hanno resistenza a compressione",
     "unchecked_long": "le spalle e il terreno: i blocchi fissi portano qualunque carico li raggiunga",
     "unchecked_both": "il veicolo nell'altra direzione",

@@ -26,7 +26,7 @@ from concio.model.fill import Fill
 from concio.model.road.earth import ground_of, with_fill, with_vehicle, without_pressure
 from concio.model.road.vehicles import axles_of
 from concio.solvers.statics.associated_limit import associated_limit
-from concio.verdict.bridge_verdict import bridge_verdict
+from concio.verdict.bridge_verdict import bridge_lines, bridge_verdict
 from concio.verdict.bridge_words import TEXTS
 
 FILL = Fill(cover=0.3, unit_weight=20.0, passive=1.0)
@@ -426,3 +426,49 @@ def test_every_datum_is_changed_by_what_the_report_says_and_alone() -> None:
     heights = [np.ptp(m.bodies[-1].vertices, axis=0) for m in (model, thicker)]
     assert not np.allclose(*heights)
     assert [step for name, _, _, step, _ in _data(small(replace(FILL, cover=0.3))) if name == "cover"] == [0.05]
+
+
+@pytest.fixture(scope="module")
+def two_brackets() -> concio.BridgeResult:
+    """Return an assessment of two positions with brackets, and of few with Coulomb states, with a dynamic factor."""
+    model = small(load=30.0)
+    vehicle = replace(model.vehicle, axles=(Axle(0.0, 30.0), Axle(1.0, 10.0)), dynamic=1.5, factor=1.2)  # type: ignore[type-var]
+    return concio.assess_bridge(
+        with_vehicle(model, vehicle), step=0.3, fine=0.3, worst=2, checked=2, sensitivity=False
+    )  # fmt: skip
+
+
+def test_what_is_carried_stands_with_the_position_where_it_is(two_brackets: concio.BridgeResult) -> None:
+    """The least of all brackets was said to be carried "there", at the position of the least bound."""
+    first, second = two_brackets.brackets
+    assert first.limit.design < second.limit.design
+    other = replace(
+        two_brackets, brackets=(replace(first, limit=second.limit), replace(second, limit=first.limit))
+    )
+    for language, there, least in (("en", "there", "The least that"), ("it", "vi porta", "Il minimo che")):
+        plain, told = (bridge_verdict(found, language).answer for found in (two_brackets, other))  # type: ignore[arg-type]
+        assert least not in plain
+        at_worst, rest = told.split(least)
+        assert there in at_worst
+        assert f"{second.limit.design:.5g}".replace(".", "," if language == "it" else ".") in at_worst
+        assert f"{first.limit.design:.5g}".replace(".", "," if language == "it" else ".") in rest
+
+
+def test_positions_without_a_coulomb_state_are_not_left_out(two_brackets: concio.BridgeResult) -> None:
+    """Two of a dozen positions were asked for: the others stood in no line."""
+    checked, every = len(two_brackets.coulomb), len(two_brackets.standings)
+    assert checked < every
+    said = f"Coulomb friction at {every - checked} of {every} positions"
+    assert any(line.startswith(said) for line in two_brackets.verdict.unchecked)
+
+
+def test_loads_of_a_vehicle_have_their_factors_in_json(two_brackets: concio.BridgeResult) -> None:
+    """'total' had the factors and 'heaviest_axle' beside it had not: the one axle weighed less than its share."""
+    told = two_brackets.summary()["vehicle"]
+    assert told["heaviest_axle"] / told["total"] == pytest.approx(30.0 / 40.0)
+    assert two_brackets.summary()["axle"] == pytest.approx(two_brackets.design * told["heaviest_axle"])
+
+
+def test_a_bridge_without_brackets_has_no_permissible_axle(two_brackets: concio.BridgeResult) -> None:
+    lines = bridge_lines(replace(two_brackets, brackets=()))
+    assert not [line for line in lines if line.startswith("  permissible") or "–" in line]

@@ -191,11 +191,13 @@ class BridgeResult(Shown):
         """Return the numbers of ``--json``."""
         worst, vehicle = self.worst, self.vehicle
         width, by = self.width
-        state = self.service
+        state, times = self.service, vehicle.dynamic * vehicle.factor
         return {
             "verdict": self.verdict.as_dict(),
-            "vehicle": {"name": vehicle.name, "heaviest_axle": vehicle.heaviest.load if vehicle.points else None,
-                        "uniform_load": max(vehicle.uniform, default=None), "total": vehicle.total,
+            "vehicle": {"name": vehicle.name,
+                        "heaviest_axle": times * vehicle.heaviest.load if vehicle.points else None,
+                        "uniform_load": times * max(vehicle.uniform) if vehicle.uniform else None,
+                        "total": vehicle.total,
                         "dynamic": vehicle.dynamic, "factor": vehicle.factor, "source": vehicle.source},
             "required": self.required,
             "load_factor": {"design": _finite(self.design), "associated": _finite(worst.multiplier),
