@@ -14,7 +14,8 @@ take for a formula are written with an apostrophe in front, which reading takes 
 A further column ``holes`` gives the holes of a block, written as its outline, with ``|`` between them; in JSON they
 are a list of outlines. A block in space has ``vertices`` and ``faces`` (and perhaps ``holes``, pairs of a face and a
 loop) in place of its outline; it goes into a JSON table. ``name`` and the shape must be there; the others, where they
-are left out or their cell is empty, have the defaults of :class:`concio.model.body.Body`. JSON may hold ``mesh_size``
+are left out or their cell is empty, have the defaults of :class:`concio.model.body.Body`; a thickness that is not
+given is that of ``[analysis]``. JSON may hold ``mesh_size``
 too, and another ``unit`` of its coordinates (thickness and mesh size are always in m).
 """
 
@@ -57,13 +58,15 @@ def _row(body: Body | Polyhedron) -> dict[str, Any]:
     return {**row, **{k: getattr(body, k) for k in _TEXTS}, "mesh_size": body.mesh_size}
 
 
-def read_blocks(path: str | Path) -> tuple[Body | Polyhedron, ...]:
+def read_blocks(path: str | Path, thickness: float = 1.0) -> tuple[Body | Polyhedron, ...]:
     """Return the blocks of a table, every outline checked.
 
     Parameters
     ----------
     path : str or Path
         Ends in ``.json`` or ``.csv``.
+    thickness : float
+        Of plane blocks that give none [m].
 
     Raises
     ------
@@ -87,7 +90,7 @@ def read_blocks(path: str | Path) -> tuple[Body | Polyhedron, ...]:
     bodies: list[Body | Polyhedron] = []
     seen: set[str] = set()
     for where, row in rows:
-        body = _body(row, factor, where)
+        body = _body(row, factor, where, thickness)
         if body.name in seen:
             msg = f"there is another block called '{body.name}'"
             raise InputError(msg, where=where, hint="give each block a name of its own")
@@ -191,7 +194,7 @@ def _csv_rows(text: str, where: str) -> Iterable[tuple[str, Mapping[str, Any]]]:
         raise InputError(msg, where=where, hint="tables with outlines as long as that go into a .json file") from None
 
 
-def _body(row: Mapping[str, Any], factor: float, where: str) -> Body | Polyhedron:
+def _body(row: Mapping[str, Any], factor: float, where: str, thickness: float) -> Body | Polyhedron:
     for key in row:
         if key not in (*_COLUMNS, *_SOLID):
             msg = f"unknown key '{key}'"
@@ -231,7 +234,7 @@ def _body(row: Mapping[str, Any], factor: float, where: str) -> Body | Polyhedro
     rings = [factor * _outline(hole, f"{where}, hole {k}") for k, hole in enumerate(holes, 1)]
     for k, ring in enumerate(rings, 1):
         check_polygon(ring, f"{name}', hole '{k}")
-    return Body(name, outline, holes=tuple(rings), **values)
+    return Body(name, outline, holes=tuple(rings), **{"thickness": thickness, **values})
 
 
 def _written(ring: Iterable[tuple[float, float]]) -> str:

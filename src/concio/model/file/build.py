@@ -15,7 +15,15 @@ from typing import Any
 from concio.arguments import closest
 from concio.display import Units
 from concio.errors import InputError
-from concio.model.file.acting_tables import LoadTable, StageTable, SupportTable, TemperatureTable, TieTable
+from concio.model.file.acting_tables import (
+    AnalysisTable,
+    LoadTable,
+    StageTable,
+    SupportTable,
+    TemperatureTable,
+    TieTable,
+)
+from concio.model.file.analysis_keys import check_dimension, thickness_of_all
 from concio.model.file.block_table import read_blocks
 from concio.model.file.bodies import Materials, body_of, rigid_where_its_material_is
 from concio.model.file.bridge_drawing_table import drawn_barrel, with_drawn_road
@@ -69,6 +77,7 @@ def build(data: FileTable, folder: Path, where: str, read: Callable[[str], Model
     with placed(where):
         model = crossed(model, with_drawn_road(data.fill, data.bridge_drawing, folder), data.vehicle)
         _check_names(model)
+        check_dimension(data.analysis, model.dim, extruded=data.extrusion is not None)
         if data.extrusion is not None:
             from concio.model.generate.extrusion import extrude
 
@@ -167,13 +176,14 @@ def _start(
     if drawing:
         return _from_drawing(data, materials, laws, folder)
     if parts:
-        return assembled_parts(parts, lambda part, label: _generated(part, materials, laws), read, data.title,
-                               ruled=data.rules is not None)  # fmt: skip
-    return _generated(data, materials, laws, drawn_barrel(data.bridge_drawing, getattr(data, "bridge", None), folder))
+        return assembled_parts(parts, lambda part, label: _generated(part, data.analysis, materials, laws), read,
+                               data.title, ruled=data.rules is not None)  # fmt: skip
+    lines = drawn_barrel(data.bridge_drawing, getattr(data, "bridge", None), folder)
+    return _generated(data, data.analysis, materials, laws, lines)
 
 
 def _generated(
-    data: Any, materials: Materials, laws: Laws, lines: Mapping[str, Any] | None = None
+    data: Any, analysis: AnalysisTable, materials: Materials, laws: Laws, lines: Mapping[str, Any] | None = None
 ) -> Model | None:
     """Return the model of the generator whose table is given, None where there is none; ``lines`` are of a survey."""
     name = next((name for name in GENERATORS if getattr(data, name, None) is not None), None)
@@ -181,7 +191,7 @@ def _generated(
         return None
     table = getattr(data, name)
     arguments = {key: _argument(getattr(table, key), name, key, materials, laws) for key in table.model_fields_set}
-    arguments |= lines or {}
+    arguments |= {**(lines or {}), **thickness_of_all(analysis, name, table)}
     own = "wall" if name == "wall_of_courses" else name
     with placed(f"[{name}]", own=own):
         model = GENERATORS[name](**arguments)
@@ -272,7 +282,7 @@ def _from_drawing(data: FileTable, materials: Materials, laws: Laws, folder: Pat
 def _blocks_of_file(data: FileTable, materials: Materials, folder: Path) -> list[Body | Polyhedron]:
     if data.blocks_file is None or data.blocks_file.lower().endswith(".dxf"):
         return []
-    bodies = read_blocks(folder / data.blocks_file)
+    bodies = read_blocks(folder / data.blocks_file, data.analysis.thickness)
     return [rigid_where_its_material_is(b, materials) for b in bodies]
 
 
