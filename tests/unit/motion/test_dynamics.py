@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from concio.analysis.motion.certified import measures
 from concio.analysis.motion.dynamics_result import Ending
 from concio.analysis.motion.state import MotionState
 from concio.contact.reference import Reference
+from concio.errors import InputError
 from concio.verdict.verdict import Outcome
 from motion_models import G, standing
 from samples import first, sample
@@ -409,3 +411,30 @@ def test_a_pulse_is_not_passed_over_by_a_step(shape):
     peaks = [float(np.abs(found.ground).max()) for found in (coarse, fine)]
     assert peaks[0] == pytest.approx(9.81, rel=0.35)
     assert peaks[1] == pytest.approx(9.81, rel=0.02)
+
+
+OTHERS = {
+    "moved": lambda m: concio.place(m, (3.0, 0.0)),
+    "wider": lambda m: concio.column(width=2.0, height=0.5, blocks=2, block="rigid"),
+    "of three blocks": lambda m: concio.column(width=1.0, height=0.5, blocks=3, block="rigid"),
+}
+
+
+@pytest.mark.parametrize("other", OTHERS)
+def test_a_motion_does_not_go_on_with_other_bodies(other: str) -> None:
+    """A column 3 m away, or twice as wide, stood where the earlier one had stood, and "came to rest"."""
+    model = concio.column(width=1.0, height=0.5, blocks=2, block="rigid")
+    end = concio.dynamics(model, duration=0.05, step=5e-3, start="as described").end
+    assert concio.dynamics(model, duration=0.05, step=5e-3, start=end).end.time == pytest.approx(0.1)
+    with pytest.raises(InputError, match="belongs to another model"):
+        concio.dynamics(OTHERS[other](model), duration=0.05, step=5e-3, start=end)
+
+
+def test_bodies_of_a_state_are_kept_in_a_file_and_far_from_the_origin(tmp_path: Path) -> None:
+    model = concio.place(concio.column(width=1.0, height=0.5, blocks=1, block="rigid"), (4.5e5, 0.0))
+    first = concio.dynamics(model, duration=0.05, step=5e-3, start="as described")
+    read = concio.load_motion(concio.save_motion(first, tmp_path / "m.npz"))
+    assert isinstance(read, concio.DynamicsResult)
+    assert concio.dynamics(model, duration=0.05, step=5e-3, start=read.end).end.time == pytest.approx(0.1)
+    with pytest.raises(InputError, match="has another shape or place"):
+        concio.dynamics(concio.place(model, (1.0, 0.0)), duration=0.05, step=5e-3, start=read.end)

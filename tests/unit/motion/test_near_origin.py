@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import pytest
@@ -18,6 +18,7 @@ class State:
     """Of a state of motion its centres alone."""
 
     centre: np.ndarray
+    described: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))
 
 
 def pillar(x: float, y: float) -> concio.Model:

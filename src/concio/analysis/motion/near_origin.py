@@ -18,6 +18,7 @@ from concio.analysis.motion.push_result import PushResult
 from concio.analysis.motion.state import MotionState
 from concio.contact.points import check_point
 from concio.contact.reference import Reference
+from concio.errors import InputError
 from concio.model.compose import place
 from concio.model.model import Model, require_model
 from concio.model.stages import ControlPoint
@@ -25,6 +26,8 @@ from concio.model.stages import ControlPoint
 Array = np.ndarray
 Told = TypeVar("Told", DynamicsResult, PushResult)
 
+SAME = 1e-6
+"""Corners nearer than this share of the size of a model are the same."""
 FAR = 100.0
 """Times its own size by which a model is away from the origin where it is moved."""
 
@@ -74,10 +77,29 @@ class Near:
         return tuple(self.point(p) for p in points)
 
     def state(self, state: MotionState, sign: float = -1.0) -> MotionState:
-        """Return a state as it is computed; with ``sign`` 1 one that was computed, where it is."""
+        """Return a state as it is computed; with ``sign`` 1 one that was computed, where it is.
+
+        Raises
+        ------
+        InputError
+            It is of a motion of other bodies.
+        """
+        if state.described.size:
+            self._same_bodies(state)
         if not self.origin.any() or state.centre.shape[1:] != self.origin.shape:
             return state
         return replace(state, centre=state.centre + sign * self.origin)
+
+    def _same_bodies(self, state: MotionState) -> None:
+        """Refuse a state of other bodies, or of bodies at other places: its own would stand at the places of those."""
+        now, before = extents(self.described), state.described
+        alike = before.shape == now.shape and before.dtype.kind == "f"
+        apart = np.abs(now - before).max(axis=1) if alike else np.full(1, np.inf)
+        if not (apart <= SAME * self.described.size).all():
+            name = self.described.bodies[int(np.argmax(apart))].name
+            which = f": block '{name}' has another shape or place" if alike else ""
+            msg = f"the state to start from belongs to another model{which}"
+            raise InputError(msg, hint="take the state of a motion of the same model")
 
     def told(self, found: Told, points: Sequence[ControlPoint], control: ControlPoint | None = None) -> Told:
         """Return what was computed, where the model was described.
@@ -89,6 +111,7 @@ class Near:
         control : ControlPoint, optional
             As they were asked for.
         """
+        found = replace(found, end=replace(found.end, described=extents(self.described)))
         if not self.origin.any():
             return found
         end, asked = self.state(found.end, 1.0), tuple(points)
@@ -101,3 +124,8 @@ class Near:
         shots = replace(found.shots, centre=found.shots.centre + self.origin)
         steps = replace(found.steps, point=found.steps.point + self.origin)
         return replace(found, model=self.described, end=end, points=asked, shots=shots, steps=steps)
+
+
+def extents(model: Model) -> Array:
+    """Return the least and the largest coordinates of the corners of each body (B, 2 d) [m]."""
+    return np.array([[*b.vertices.min(axis=0), *b.vertices.max(axis=0)] for b in model.bodies], dtype=float)

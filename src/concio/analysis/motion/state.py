@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 
 import numpy as np
@@ -176,6 +176,9 @@ class MotionState:
         Velocities of nodes [m/s].
     memory : Memory
     ties : TieMemory
+    described : (B, 2 d) array
+        Least and largest coordinates of the corners of each body as it was described, at the end of a motion [m]; else
+        empty. A motion that goes on is one of the same bodies.
     """
 
     time: float
@@ -187,6 +190,7 @@ class MotionState:
     nodal: Array
     memory: Memory
     ties: TieMemory
+    described: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
     @classmethod
     def at_rest(cls, reference: Reference) -> MotionState:
