@@ -120,6 +120,9 @@ def apply_supports(disc: Discretisation) -> Supported:
             raise InputError(msg, where=where)
         b = number[support.body]
         if disc.shape_of[b] == FIXED:
+            if support.moves and (support.edge is not None or support.polygon is not None):
+                msg = f"'{support.body}' is fixed and moves as a whole: no part of it can be moved"
+                raise InputError(msg, where=where, hint="leave the place out, or divide it into several fixed blocks")
             continue
         if support.name in names:
             msg = "another support or fixed body has the same name"

@@ -104,8 +104,20 @@ def _moves_what_it_holds(held: str, moved: tuple[float, ...], where: str) -> Non
         raise InputError(msg, where=where, hint=f"directions = '{''.join(sorted({*held, *free}))}' holds what is moved")
 
 
+PLACES = {"weight": (), "body": (), "point": ("at",), "pressure": ("edge", "polygon", "face"),
+          "traction": ("edge", "polygon", "face")}  # fmt: skip
+"""What says where a load of a kind acts, beside its bodies."""
+
+
 def _load(load: Load, dim: int) -> Load:
     where = f"load group '{load.group}'"
+    idle = [name for name in ("at", "edge", "polygon", "face")
+            if getattr(load, name) is not None and name not in PLACES.get(load.kind, (name,))]  # fmt: skip
+    if idle:
+        msg = f"a {load.kind} load takes no '{idle[0]}'"
+        own = " or ".join(f"'{name}'" for name in PLACES[load.kind])
+        told = "it acts on all of its bodies: name them in 'bodies'" if not own else f"it acts where {own} says"
+        raise InputError(msg, where=where, hint=f"leave it out: {told}")
     _region(load, where, dim)
     if load.at is not None:
         _numbers(load.at, dim, "at", where, dim)

@@ -1,7 +1,8 @@
-"""Keys of [analysis]: they hold for all blocks of a file, or are refused where they mean nothing."""
+"""Keys of [analysis], of laws and of loads: what is stated acts, or is refused where it means nothing."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -80,3 +81,51 @@ def test_a_plane_model_that_is_swept_takes_the_keys_of_both() -> None:
     assert swept.dim == 3
     assert swept.contact_points == 4
     assert swept.bodies[-1].vertices[:, 1].max() - swept.bodies[-1].vertices[:, 1].min() == pytest.approx(0.3)
+
+
+LAWS = {
+    "column": ("friction = 0.4", "joint"),
+    "wall": ("base_friction = 0.4", "base"),
+    "bridge": ("ring = [0.15, 0.15]\nring_friction = 0.4", "ring joint"),
+}
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_a_coefficient_that_is_stated_twice_is_refused(name: str) -> None:
+    """Friction of 0.4 in [column] was left aside for the 0.1 of [joints.joint]."""
+    stated, law = LAWS[name]
+    table = f"[{name}]\n{GENERATED[name].replace('ring = 0.3', '')}{stated}\n"
+    key = stated.split("\n")[-1].split(" = ")[0]
+    with pytest.raises(InputError, match=rf"{key} of \[{name}\] and \[joints.{law}\] are both stated"):
+        concio.loads(f'{table}[joints."{law}"]\nfriction = 0.1\n')
+    assert concio.loads(f'{table}[joints."{law}"]\nfriction = 0.4\n').laws[law].friction == 0.4
+    plain = f"[column]\n{GENERATED['column']}[joints.joint]\nfriction = 0.1\n"
+    assert concio.loads(plain).laws["joint"].friction == 0.1
+
+
+IDLE = {
+    "edge of a weight": ("weight", (0.0, -1.0), {"edge": ((0.0, 0.0), (1.0, 0.0))}),
+    "place of a body force": ("body", (0.0, -1.0), {"at": (0.0, 0.5)}),
+    "face of a point load": ("point", (0.0, -1.0), {"at": (0.0, 0.5), "bodies": ("b01",), "face": "upper"}),
+    "edge of a point load": ("point", (0.0, -1.0), {"at": (0.0, 0.5), "edge": ((0.0, 0.0), (1.0, 0.0))}),
+    "place of a pressure": ("pressure", (1.0,), {"edge": ((-0.25, 1.0), (0.25, 1.0)), "at": (0.0, 1.0)}),
+}
+
+
+@pytest.mark.parametrize("sort", IDLE)
+def test_a_place_that_a_load_does_not_take_is_refused(sort: str) -> None:
+    """It was left aside, and all of a block was loaded where an edge was named."""
+    kind, value, given = IDLE[sort]
+    model = concio.column(width=0.5, height=1.0, blocks=1, block="rigid")
+    with pytest.raises(InputError, match=rf"a {kind} load takes no '"):
+        replace(model, loads=(concio.Load(kind, value, **given),))  # type: ignore[arg-type]
+
+
+def test_a_part_of_a_fixed_block_does_not_move_alone() -> None:
+    """Half of the ground was to sink by 1 mm: all of it sank, and nothing cracked."""
+    model = concio.column(width=0.5, height=1.0, blocks=1, block="rigid")
+    half = concio.Support("half", "ground", edge=((0.0, 0.0), (0.25, 0.0)), displacement=(0.0, -0.001))
+    with pytest.raises(InputError, match="'ground' is fixed and moves as a whole"):
+        concio.solve(replace(model, supports=(half,)))
+    still = replace(half, displacement=())
+    assert concio.solve(replace(model, supports=(still,))).reactions["ground"][1] == pytest.approx(10.0)

@@ -182,6 +182,13 @@ def _start(
     return _generated(data, data.analysis, materials, laws, lines)
 
 
+LAWS_OF_GENERATORS = {
+    "joint": "friction", "ring joint": "ring_friction", "head": "head", "base": "base_friction",
+    "side wall": "wall_friction",
+}  # fmt: skip
+"""Names of joint laws that generators make, and the key of their table that states each."""
+
+
 def _generated(
     data: Any, analysis: AnalysisTable, materials: Materials, laws: Laws, lines: Mapping[str, Any] | None = None
 ) -> Model | None:
@@ -199,6 +206,10 @@ def _generated(
         if word in model.materials and word in ("block", "mortar"):
             msg = f"'{word}' is the name of the material of [{name}] itself"
             raise InputError(msg, where=f"[materials.{word}]", hint=f"write [{name}.{word}], or choose another name")
+    for word, key in LAWS_OF_GENERATORS.items():
+        if word in laws and key in table.model_fields_set and model.laws.get(word, laws[word]) != laws[word]:
+            msg = f"{key} of [{name}] and [joints.{word}] are both stated, and they differ"
+            raise InputError(msg, where=f"[joints.{word}]", hint=f"leave one of them out, or write {key} = '{word}'")
     return model
 
 
