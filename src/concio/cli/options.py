@@ -72,18 +72,22 @@ def factors_of(texts: list[str] | None) -> dict[str, float]:
     Raises
     ------
     InputError
-        A text is not of that form.
+        A text is not of that form, or a group has two factors.
     """
     from concio.errors import InputError
     from concio.units import quantity
 
-    factors = {}
+    factors: dict[str, float] = {}
     for text in texts or ():
         group, sign, value = text.partition("=")
         if not sign or not group.strip():
             msg = f"'{text}' is not a factor of a load group"
             raise InputError(msg, where="--factor", hint="write for example --factor live=1.5")
-        factors[group.strip()] = quantity(value, "number", where=f"--factor {group.strip()}")
+        name = group.strip()
+        if name in factors:
+            msg = f"two factors are given for the load group '{name}'"
+            raise InputError(msg, where=f"--factor {name}", hint="give one: factors do not multiply each other")
+        factors[name] = quantity(value, "number", where=f"--factor {name}")
     return factors
 
 

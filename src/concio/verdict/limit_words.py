@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from concio.solvers.statics.friction import FrictionBounds
 
 NOT_ASKED = "not asked for"
+NO_LOAD = 1e-9
+"""A collapse state at a multiplier below this is that without any load, where nothing else acts."""
 
 REST = " " * 23
 """Where a number is reported on."""
@@ -212,6 +214,8 @@ def collapse_lines(found: LimitResult) -> list[str]:
     if found.collapse_state is None:
         return [f"{head}{found.search}"]
     value = found.collapse_state.multiplier
+    if found.endless and abs(value) < NO_LOAD:
+        return [f"{head}none counts: the one found is that without any load"]
     if not found.state_counts:
         return [
             f"{head}{value:.6g} is not counted: it depends on where the pressure acts in a joint that twists "

@@ -34,6 +34,8 @@ ADDS_UP = (
     "hard joints of rigid blocks give way by a millionth of a width, which adds up where they are many: extended back "
     "to zero displacement, the falling part of the curve begins {share} % above the peak"
 )
+NONE_LEFT = 1e-4
+"""Share of the peak below which a curve that has ended carries nothing any more."""
 SMALL = 0.005
 """Share of the peak by which the falling part of a curve begins above it, below which the sentence is the usual one."""
 HEADLINES = {
@@ -169,7 +171,8 @@ def _answer(found: PushResult) -> str:
     else:
         told = f"The multiplier still grows where the curve ends, {number(found.peak, 6)} at {at}: no peak was reached."
     endings = {
-        "LOST": f"The strength is lost at {end}.",
+        "LOST": f"The multiplier falls to {now} at {end}." if abs(found.multiplier[last]) > NONE_LEFT * found.peak
+        else f"The strength is lost at {end}.",
         "REACHED": f"The requested end was reached, {end}; the multiplier is {now} there.",
         "NO_EQUILIBRIUM": f"No equilibrium beyond {end} could be followed, where the multiplier is {now}: there may be "
         "another one there, or none.",

@@ -84,3 +84,38 @@ def test_a_multiplied_group_is_stated_with_its_own_factor(file, factor):
     found = json.loads(out)
     (live,) = [one for one in found["verdict"]["question"]["acting"] if one["group"] == "live"]
     assert live["factor"] * live["force"][0] == pytest.approx(12.0 if factor > 0 else -12.0, rel=1e-4)
+
+
+@pytest.mark.parametrize(("command", "options"), [
+    ("run", ("-f", "live=2", "-f", "live=3")), ("path", ("--stage", "dead=1,live=1,dead=2")),
+    ("shake", ("--pulse", "sine,0.1 g,0.2 s", "-f", "live=2", "-f", "live=2")),
+])  # fmt: skip
+def test_two_factors_of_one_group_are_refused(command: str, options: tuple[str, ...], tmp_path: Path) -> None:
+    """The last one counted, without a word on the first."""
+    path = tmp_path / "m.toml"
+    path.write_text(MODEL)
+    code, _, error = run(command, path, *options)
+    assert code == 2
+    assert "two factors are given for the load group" in " ".join(error.split())
+
+
+def test_a_push_that_ends_at_a_multiplier_does_not_say_that_the_strength_is_lost(tmp_path: Path) -> None:
+    """A curve that ends at half of the peak by --smallest ended where "the strength is lost"."""
+    path = tmp_path / "m.toml"
+    path.write_text(MODEL)
+    told = {}
+    for smallest in (0.0, 3.0):
+        told[smallest] = json.loads(run("push", path, "--smallest", smallest, "--json")[1])["verdict"]["sentence"]
+    assert "The strength is lost at" in told[0.0]
+    assert "The multiplier falls to 3 at" in told[3.0]
+    assert "lost" not in told[3.0]
+
+
+def test_a_collapse_state_without_any_load_is_none(tmp_path: Path) -> None:
+    """Where all loads are multiplied, and are carried at any multiple, 0 was one "where friction lets it move"."""
+    path = tmp_path / "m.toml"
+    path.write_text(MODEL)
+    code, out, _ = run("limit", path, "-g", "live", "-g", "dead")
+    assert code == 0
+    assert "can grow without bound" in out
+    assert "lets it begin to move" not in out
