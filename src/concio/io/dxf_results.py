@@ -36,7 +36,7 @@ from concio.plot.model_figure import load_arrows
 from concio.post.force_lines import joint_forces
 from concio.post.joint_lines import JointLines, joint_lines
 from concio.post.mechanism_states import mechanism_states
-from concio.post.outlines import Outlines, display_scale, outlines
+from concio.post.outlines import STILL, Outlines, anything_moves, display_scale, outlines
 from concio.problem.pair_state import PairState
 
 if TYPE_CHECKING:
@@ -100,6 +100,7 @@ def _drawn(result: Result, scale: float | None) -> Iterator[Drawn]:
         factor = display_scale(largest, rest.size, MOVED) if scale is None else scale
         yield from _moved("DEFORMED", rest, factor)
         note = f"displacements x {factor:g}; largest {result.model.report.text('motion', largest)}"
+        note = note if anything_moves(largest, rest.size) else STILL
         corner = rest.points.min(axis=0) - [0.0, 4 * TEXT * rest.size]
         yield Drawn(HEAD + "DEFORMED", corner[None], text=note, size=TEXT * rest.size)
         yield from _ties(result, rest.size)

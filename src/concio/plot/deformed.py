@@ -12,7 +12,7 @@ from concio.plot import style
 from concio.post.body_motion import body_motions
 from concio.post.joint_lines import JointLines, joint_lines
 from concio.post.mechanism_states import mechanism_states
-from concio.post.outlines import display_scale, outlines
+from concio.post.outlines import NO_MOTION, STILL, anything_moves, display_scale, outlines
 from concio.problem.pair_state import PairState
 from concio.problem.solution import Status
 
@@ -51,10 +51,9 @@ def plot_deformed(result: Result, ax: Axes | None = None, *, scale: float | None
     state = result.contacts.state
     pieces = joint_lines(result, shown)
     _draw_states(ax, pieces, state, scale)
-    style.dress(
-        ax, box, "Deformed shape and state of the joints",
-        f"displacements x {scale:g}; largest {units.text('motion', largest)}", units=units,
-    )  # fmt: skip
+    note = f"displacements x {scale:g}; largest {units.text('motion', largest)}"
+    note = note if anything_moves(largest, shown.size) else STILL
+    style.dress(ax, box, "Deformed shape and state of the joints", note, units=units)
     handles: list[Any] = [style.handle(style.STICK), style.handle(style.SLIP)]
     if (state == PairState.CRUSHED).any():
         handles.append(style.handle(style.CRUSHED))
@@ -80,7 +79,8 @@ def plot_slip(result: Result, ax: Axes | None = None) -> Axes:
     ax, shown, box = style.draw_at_rest(result, ax)
     pieces = joint_lines(result, shown)
     contacts = result.contacts
-    gap, slip = np.maximum(contacts.gap[pieces.pair], 0.0), np.linalg.norm(contacts.slip[pieces.pair], axis=1)
+    gap, slip = contacts.gap[pieces.pair], np.linalg.norm(contacts.slip[pieces.pair], axis=1)
+    gap, slip = (np.where(v > NO_MOTION * shown.size, v, 0.0) for v in (gap, slip))
     opened = contacts.states.open[pieces.pair]
     widest = max(float(gap[opened].max(initial=0.0)), float(slip[~opened].max(initial=0.0)))
     lines = pieces.ends

@@ -21,6 +21,10 @@ if TYPE_CHECKING:
     from concio.analysis.result import Result
 
 Array = np.ndarray
+STILL = "nothing moves"
+"""What is said of displacements that are rounding."""
+NO_MOTION = 1e-12
+"""Share of the size of a model below which displacements are rounding; strains of stone under its weight are 1e-6."""
 
 
 @short_repr
@@ -129,9 +133,17 @@ def _loops(shape: Shape) -> list[tuple[Array, Array]]:
     return found
 
 
+def anything_moves(largest: float, size: float) -> bool:
+    """Return whether a largest displacement [m] is more than rounding in a model of a size [m]."""
+    return largest > NO_MOTION * size
+
+
 def display_scale(largest: float, size: float, share: float = 0.05) -> float:
-    """Return a round factor (1, 2 or 5 times a power of ten) that shows ``largest`` as about ``share`` of ``size``."""
-    if not (largest > 0 and size > 0 and np.isfinite(largest)):
+    """Return a round factor (1, 2 or 5 times a power of ten) that shows ``largest`` as about ``share`` of ``size``.
+
+    It is 1 where nothing moves.
+    """
+    if not (anything_moves(largest, size) and size > 0 and np.isfinite(largest)):
         return 1.0
     wanted = share * size / largest
     power = 10.0 ** np.floor(np.log10(wanted))

@@ -35,7 +35,7 @@ ADDS_UP = (
     "to zero displacement, the falling part of the curve begins {share} % above the peak"
 )
 NONE_LEFT = 1e-4
-"""Share of the peak below which a curve that has ended carries nothing any more."""
+"""Share of the peak below which the strength is lost where a curve has ended."""
 SMALL = 0.005
 """Share of the peak by which the falling part of a curve begins above it, below which the sentence is the usual one."""
 HEADLINES = {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 import concio
 from concio.analysis.result import Result
@@ -25,10 +27,11 @@ from concio.post.force_lines import force_chains, joint_forces
 from concio.post.joint_lines import joint_lines
 from concio.post.mechanism_states import mechanism_states
 from concio.post.motion_frames import Frame, box_of
-from concio.post.outlines import display_scale, outlines
+from concio.post.outlines import NO_MOTION, STILL, display_scale, outlines
 from concio.post.pressure import pressure_diagrams
 from concio.post.struts import Pushed, balanced, struts
 from concio.post.thrust_line import thrust_lines
+from concio.problem.certificate import kinematics
 from concio.problem.solution import Status
 from models import bearing_panel, box, on_ground, sliding_panel, weight
 
@@ -439,3 +442,28 @@ def test_the_frame_of_a_film_holds_what_moves_in_every_picture():
     low, high = box_of(pictures, model)
     assert low == pytest.approx([-0.32, -0.32])  # 8 hundredths of the larger side beyond what moves
     assert high == pytest.approx([4.32, 2.32])
+
+
+@pytest.mark.parametrize("size", [0.3, 1.0, 40.0])
+def test_rounding_is_not_drawn_as_motion(size: float) -> None:
+    """A block that sticks stood beside its place, and its joint was drawn as slipping: both were rounding x 1e21."""
+    assert display_scale(0.5 * NO_MOTION * size, size) == 1.0
+    assert display_scale(2.0 * NO_MOTION * size, size) > 1e9
+    column = concio.column(width=0.5 * size, height=size, blocks=2, block="rigid", unit_weight=20.0, horizontal=0.2)
+    result = concio.solve(column)
+    rounding = 1e-17 * size * np.random.default_rng(0).normal(size=result.solution.displacement.shape)
+    problem = result.assembly.problem(result.factors)
+    found = result.solution
+    seen = kinematics(problem, rounding, found.normal_force, found.friction_force)
+    moved = replace(result, solution=replace(found, displacement=rounding, kinematics=seen))
+    ax = moved.plot.deformed()
+    assert STILL in [text.get_text() for text in ax.figure.findobj(Text)]
+    drawn = np.concatenate([path.vertices for c in ax.findobj(PolyCollection) for path in c.get_paths()])
+    assert np.abs(drawn[:, 0]).max() <= 0.25 * size * (1 + 1e-9)
+    slips = moved.plot.slip()
+    assert not [c for c in slips.findobj(LineCollection) if max(c.get_linewidths(), default=0.0) > 5.0]
+
+
+def test_what_moves_is_drawn_as_before(panel: Result) -> None:
+    ax = panel.plot.deformed()
+    assert [t for t in ax.figure.findobj(Text) if t.get_text().startswith("displacements x ")]
