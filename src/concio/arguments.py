@@ -14,6 +14,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ParamSpec, TypeVar
 
+import numpy as np
+
 from concio.argument_types import Check, checker, told
 from concio.errors import ArgumentError
 from concio.synonyms import meant
@@ -89,10 +91,24 @@ def strict_with(names: Iterable[str]) -> Callable[[Callable[P, T]], Callable[P, 
 
 
 def strict_class(cls: type[T]) -> type[T]:
-    """Make the constructor of a class :func:`strict`."""
+    """Make the constructor of a class :func:`strict`; it keeps copies of dictionaries, lists and arrays."""
     made: Any = cls.__init__
-    type.__setattr__(cls, "__init__", _strict(made, _Expected.of(made, method_of=cls.__name__)))
+
+    @functools.wraps(made)
+    def keeping(self: object, *args: object, **kwargs: object) -> None:
+        made(self, *map(_own, args), **{name: _own(value) for name, value in kwargs.items()})
+
+    type.__setattr__(cls, "__init__", _strict(keeping, _Expected.of(made, method_of=cls.__name__)))
     return cls
+
+
+def _own(value: object) -> object:
+    """Return a copy of a dictionary, a list or an array, and everything else as it is."""
+    if type(value) is list:
+        return [_own(v) for v in value]
+    if isinstance(value, np.ndarray) or type(value) is dict:
+        return value.copy()
+    return value
 
 
 def _strict(function: Callable[P, T], expected: _Expected) -> Callable[P, T]:
