@@ -137,6 +137,7 @@ class StepSolver:
             if found is not None and found.residual < STEP_SETTLED:
                 return found
             self._one = None
+            return self._fallback(p, found)
         found = self._rounds(p, states, x, t)
         if found is not None and found.residual < STEP_SETTLED:
             return found
