@@ -45,6 +45,8 @@ def assessment_notes(
         given, period = found.site.at(level).T_R, found.site.period(level)
         if abs(given - period) > ROUNDED * period:
             lines.append(say("note_period", level=level, given=given, own=period))
+    idle = {level: ", ".join(found.site.idle(level)) for level in found.levels}
+    lines += [say("note_idle", what=what, level=level, code=rules.name) for level, what in idle.items() if what]
     of_level = float(rules.tables["knowledge"][found.knowledge])
     if found.confidence_by == "given" and found.confidence < of_level:
         lines.append(say("note_confidence", given=found.confidence, level=found.knowledge, own=of_level))

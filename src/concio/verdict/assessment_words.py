@@ -107,6 +107,7 @@ EN = {
     "note_q": "the behaviour factor q of {given} was given by the author; that of the code is {own}",
     "note_participation": "the share of the mass that takes part, e* = {given}, was given by the author; that of a "
     "mechanism is {own}",
+    "note_idle": "{what} of {level} do not count: {code} fixes the spectrum by type and soil",
     "assumed": "not given, and assumed: {what}",
     "assumed_soil": "soil {value}",
     "assumed_topography": "topography {value}",
@@ -230,6 +231,7 @@ IT = {
     "note_q": "il fattore di comportamento q = {given} è indicato dall'autore; quello della norma è {own}",
     "note_participation": "la frazione di massa partecipante e* = {given} è indicata dall'autore; quella di un "
     "meccanismo è {own}",
+    "note_idle": "{what} di {level} non contano: {code} fissa lo spettro con il tipo e il sottosuolo",
     "assumed": "non dati, e assunti: {what}",
     "assumed_soil": "sottosuolo {value}",
     "assumed_topography": "categoria topografica {value}",

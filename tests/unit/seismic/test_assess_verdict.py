@@ -436,3 +436,21 @@ def test_the_largest_difference_of_checks_by_hand_is_told_and_how_many_differ(la
         alone = SimpleNamespace(hand_checks=checks[2:], mechanisms=mechanisms[:1], bounds={}, open=[])
         assert len(grounds(alone, language)) == 1
         assert len(grounds(SimpleNamespace(hand_checks=[], mechanisms=[], bounds={}, open=[]), language)) == 0
+
+
+def test_numbers_of_a_hazard_that_do_not_count_are_said() -> None:
+    """F0 = 3 and Tc = 0.9 beside a code with fixed spectra were left aside without a word."""
+    for numbers, said in (({}, False), ({"F0": 3.0}, True), ({"F0": 3.0, "Tc": 0.9}, True)):
+        found = assessed(overturning(), site=concio.Site(hazard={"SLV": {"a_g": 0.05, **numbers}}, code="en1998"))
+        lines = [line for line in found.verdict.attention if "SLV do not count" in line]
+        assert bool(lines) is said
+        assert all(key in lines[0] for key in numbers)
+    stated = concio.Site(hazard={"SLV": {"a_g": 0.05, "F0": 2.5, "Tc": 0.3}})
+    assert not [line for line in assessed(overturning(), site=stated).verdict.attention if "do not count" in line]
+
+
+@pytest.mark.parametrize("kind", ["2", "9"])
+def test_a_type_of_spectrum_that_a_code_has_not_is_refused(kind: str) -> None:
+    with pytest.raises(concio.InputError, match="has no types of spectra"):
+        concio.Site(hazard={"SLV": {"a_g": 0.05}}, spectrum_type=kind)
+    assert concio.Site(hazard={"SLV": {"a_g": 0.05}}, code="en1998", spectrum_type="2").spectrum_type == "2"

@@ -132,6 +132,9 @@ class Site:
         object.__setattr__(self, "hazard", points)
         given = self.building if isinstance(self.building, list | tuple) else (self.building,)
         object.__setattr__(self, "building", tuple(_mode(m) for m in given))
+        if self.spectrum_type != "1" and "types" not in rules.tables:
+            msg = f"spectrum_type = '{self.spectrum_type}', and {rules.name} has no types of spectra"
+            raise InputError(msg, hint="leave it out: F0 and Tc of the hazard give the shape of the spectrum")
         rules.spectrum(1.0, 2.5, 0.3, self.soil, self.topography, self.spectrum_type)
         rules.reference_life(self.nominal_life, self.use_class)
 
@@ -178,6 +181,11 @@ class Site:
     def invented(self, level: str) -> tuple[str, ...]:
         """Return which numbers of a limit state were not given though its spectrum is made of them: "F0", "Tc"."""
         return () if "types" in self.rules.tables else self.at(level).filled
+
+    def idle(self, level: str) -> tuple[str, ...]:
+        """Return which numbers of a limit state were given though its code fixes the spectrum: "F0", "Tc"."""
+        filled = self.at(level).filled
+        return tuple(key for key in ("F0", "Tc") if key not in filled) if "types" in self.rules.tables else ()
 
     def at(self, level: str) -> Hazard:
         """Return the hazard of a limit state, with its return period.
