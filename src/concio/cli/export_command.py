@@ -56,6 +56,7 @@ def export(
     target = out if out is not None else directory / NAMES.get(to, "results.dxf" if results else f"deformed.{to}")
     result = load_result(directory)
     _check_results(result, to, results=results)
+    _check_options(result, to, target, scale=scale, unit=unit)
     if to in ("vtu", "csv"):
         check_directory(target)
         with replaced_directory(target) as fresh:
@@ -83,6 +84,22 @@ def _check_results(result: Result, to: str, *, results: bool) -> None:
         msg = "--results draws layers into a DXF drawing of a plane model"
         hint = "write --to dxf" if to != "dxf" else "in space, --to vtu has joints with their forces and states"
         raise InputError(msg, where=f"--to {to}", hint=hint)
+
+
+def _check_options(result: Result, to: str, target: Path, *, scale: float | None, unit: str | None) -> None:
+    """Raise where an option would be left aside, and where the name of a file of solids says another format."""
+    where = f"--to {to}"
+    if unit is not None and (to != "dxf" or result.model.dim == 3):
+        msg = "--unit is that of a DXF drawing of a plane model; all else is written in m"
+        raise InputError(msg, where=where, hint="leave it out")
+    if scale is not None and to in ("vtu", "csv", "toml"):
+        msg = "--scale is that of displaced shapes, which this format does not hold"
+        hint = "leave it out" + (": ParaView scales displacements by 'Warp By Vector'" if to == "vtu" else "")
+        raise InputError(msg, where=where, hint=hint)
+    solids = to not in ("vtu", "csv", "toml") and (to != "dxf" or result.model.dim == 3)
+    if solids and target.suffix.lower() != f".{to}":
+        msg = f"'{target.name}' does not end in .{to}"
+        raise InputError(msg, where=where, hint=f"write --out {target.stem}.{to}")
 
 
 def _write_tables(result: Result, to: str, place: Path) -> list[Path]:

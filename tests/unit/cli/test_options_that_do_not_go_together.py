@@ -119,3 +119,29 @@ def test_a_collapse_state_without_any_load_is_none(tmp_path: Path) -> None:
     assert code == 0
     assert "can grow without bound" in out
     assert "lets it begin to move" not in out
+
+
+IDLE = {
+    "unit of tables": (2, ("--to", "csv", "--unit", "mm"), "--unit is that of a DXF drawing of a plane model"),
+    "scale of tables": (2, ("--to", "csv", "--scale", "10"), "--scale is that of displaced shapes"),
+    "scale of a series": (2, ("--to", "vtu", "--scale", "10"), "Warp By Vector"),
+    "scale of a model": (2, ("--to", "toml", "--scale", "10"), "--scale is that of displaced shapes"),
+    "unit of solids": (3, ("--to", "obj", "--unit", "mm"), "--unit is that of a DXF drawing of a plane model"),
+    "another format": (3, ("--to", "obj", "--out", "solids.stl"), "'solids.stl' does not end in .obj"),
+    "no format": (3, ("--to", "stl", "--out", "solids"), "write --out solids.stl"),
+}
+
+
+@pytest.mark.parametrize("sort", IDLE)
+def test_options_of_an_export_that_would_be_left_aside(
+    sort: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Tables "in mm" were in m, and ``--to obj --out solids.stl`` wrote an STL file."""
+    monkeypatch.chdir(tmp_path)
+    dim, options, said = IDLE[sort]
+    Path("m.toml").write_text(MODEL + ("[extrusion]\nthickness = 1.0\n" if dim == 3 else ""))
+    assert run("run", "m.toml", "--out", "r", "--quiet")[0] == 0
+    code, _, error = run("export", "r", *options)
+    assert code == 2
+    assert said in " ".join(error.split())
+    assert not Path("solids.stl").exists()
