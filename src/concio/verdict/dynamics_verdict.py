@@ -237,4 +237,19 @@ def _noticed(found: DynamicsResult) -> tuple[str, ...]:
         "before a record that is to begin later",
     )
     odd = (f"the energy balance is off by {_of_what(found)}: take a smaller step",)
-    return (*found.notes, *(late if _nothing_left(found) else ()), *(odd if found.energy.error > CLOSES else ()))
+    more = (*(late if _nothing_left(found) else ()), *(odd if found.energy.error > CLOSES else ()))
+    return (*found.notes, *_idle_damping(found), *more)
+
+
+def _idle_damping(found: DynamicsResult) -> tuple[str, ...]:
+    """Return in a sentence each damping that was stated and damps nothing: blocks are rigid, joints hard."""
+    reference, scheme = found.reference, found.scheme
+    elastic = bool(reference.meshed.size)
+    sprung = bool(reference.laws.normal.any() or reference.laws.tangential.any() or found.model.ties)
+    told = []
+    if scheme.mass_damping and not elastic:
+        told.append("mass damping acts in elastic blocks, and all blocks are rigid: nothing is damped by it")
+    if scheme.stiffness_damping and not (elastic or sprung):
+        told.append("stiffness damping acts in elastic blocks, joints with a stiffness and ties, and there are none: "
+                    "nothing is damped by it")  # fmt: skip
+    return tuple(told)

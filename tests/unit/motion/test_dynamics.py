@@ -438,3 +438,18 @@ def test_bodies_of_a_state_are_kept_in_a_file_and_far_from_the_origin(tmp_path: 
     assert concio.dynamics(model, duration=0.05, step=5e-3, start=read.end).end.time == pytest.approx(0.1)
     with pytest.raises(InputError, match="has another shape or place"):
         concio.dynamics(concio.place(model, (1.0, 0.0)), duration=0.05, step=5e-3, start=read.end)
+
+
+@pytest.mark.parametrize(("law", "kind", "idle"), [
+    (0.6, "rigid", ("mass_damping", "stiffness_damping")),
+    (concio.JointLaw(0.6, normal_stiffness=1e6, tangential_stiffness=1e6), "rigid", ("mass_damping",)),
+    (0.6, concio.Elastic(E=1e6, unit_weight=20.0), ()),
+])  # fmt: skip
+def test_damping_that_damps_nothing_is_said(law: object, kind: object, idle: tuple[str, ...]) -> None:
+    """5 % of damping were stated for rigid blocks on hard joints, and left aside without a word."""
+    column = concio.column(width=0.5, height=0.5, blocks=1, block=kind, friction=law)  # type: ignore[arg-type]
+    for name in ("mass_damping", "stiffness_damping"):
+        found = concio.dynamics(column, duration=0.02, step=0.01, **{name: 1e-3})  # type: ignore[arg-type]
+        told = [line for line in found.verdict.attention if "nothing is damped by it" in line]
+        assert len(told) == (1 if name in idle else 0)
+    assert "damped" not in " ".join(concio.dynamics(column, duration=0.02, step=0.01).verdict.attention)
