@@ -259,13 +259,16 @@ def thickness_words(model: Model) -> tuple[str, ...]:
 def other_stages(model: Model, followed: Iterable[Stage] = ()) -> tuple[str, ...]:
     """Return in a sentence that stages of a model are not those that are followed; none where they are, or of a cell.
 
+    Stages of the same names and factors are those of the model, with a control or with steps of their own.
+
     Parameters
     ----------
     model : Model
     followed : iterable of Stage, optional
     """
     own = model.stages
-    if not own or model.periods is not None or [*map(repr, own)] == [*map(repr, followed)]:
+    asked, stated = ([(stage.name, dict(stage.factors)) for stage in stages] for stages in (followed, own))
+    if not own or model.periods is not None or asked == stated:
         return ()
     names = ", ".join(f"'{stage.name}'" for stage in own[:MOST_STAGES]) + (" ..." if len(own) > MOST_STAGES else "")
     return (f"the stages of the model are not followed, nor do their factors act: {names}; 'concio path' follows them",)

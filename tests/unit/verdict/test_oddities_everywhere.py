@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -133,8 +134,12 @@ def test_stages_that_are_followed_are_those_of_the_question() -> None:
     """Other stages are told; a state of a path is called that, and not one step from rest."""
     model = concio.loads(DEFAULT + STAGES)
     path, other = concio.run_path(model), concio.run_path(model, [concio.Stage("all", {"dead": 1.0, "live": 1.0})])
-    known = [" ".join(found.verdict.question.assumptions) for found in (path, other)]
-    assert ["not followed" in text for text in known] == [False, True]
+    point = concio.ControlPoint("pillar", model.body("pillar").outline[2])
+    controlled = [replace(one, steps=7) for one in model.stages[:-1]]
+    controlled.append(replace(model.stages[-1], control=point, until=1e-3))
+    moved = concio.run_path(model, controlled)
+    known = [" ".join(found.verdict.question.assumptions) for found in (path, other, moved)]
+    assert ["not followed" in text for text in known] == [False, True, False]
     state = path.result().verdict.question
     assert "a state of a load path" in state.asked
     assert "not followed" not in " ".join(state.assumptions)
