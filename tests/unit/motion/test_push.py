@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -347,3 +348,15 @@ def test_joints_that_are_open_at_first_close_before_the_push(blocks: int, dim: i
     pushed = concio.push(model, direction=(1.0, 0.0, 0.0)[:dim], until=0.02)
     middle = blocks * high / 2 - (blocks - 1) * gap / 2
     assert pushed.multiplier.max() == pytest.approx(min(0.6, wide / 2 / middle), rel=1e-4)
+
+
+@pytest.mark.parametrize("strength", [100.0, 400.0])
+def test_a_push_of_joints_that_crush_prints_no_warning(strength: float) -> None:
+    """Pairs without compliance were divided by the least number there is; the peak is that of a stress block."""
+    law = concio.JointLaw(2.0, compressive_strength=strength)
+    column = concio.column(width=0.5, height=1.0, blocks=1, block="rigid", unit_weight=20.0, horizontal=0.1,
+                           friction=law)  # fmt: skip
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = concio.push(column)
+    assert found.peak == pytest.approx(10.0 * (0.25 - 10.0 / (2.0 * strength)) / 0.5, rel=2e-3)

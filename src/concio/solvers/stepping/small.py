@@ -26,6 +26,9 @@ from concio.solvers.lcp.linear_problem import LinearComplementarity
 STATES = 12
 """Largest number of states that Newton's method goes through; most problems of steps need two or three."""
 
+LEAST = 1e-100
+"""Compliance of a pair below which it is none [m/kN]; displacements over it are still finite numbers."""
+
 SHARE = 1e-11
 """Compliance added to rows that hold, over that of their pair: rigid blocks on many corners have no unique forces."""
 
@@ -48,7 +51,7 @@ def solve_small(W: Array, q: Array, cone: Cone, dilatancy: Array) -> Array | Non
 def by_states(W: Array, q: Array, cone: Cone, dilatancy: Array) -> Array | None:
     """Return the forces (v, 2) where states repeat themselves; None where they do not, or come round again."""
     own = W.diagonal().reshape(-1, 2)
-    unit = np.where(own > 0, own, max(float(own.max(initial=0.0)), np.finfo(float).tiny))
+    unit = np.where(own > LEAST, own, max(float(own.max(initial=0.0)), LEAST))
     t, seen, rigid = np.zeros((len(q) // 2, 2)), [b""], np.zeros(len(q) // 2)
     for _ in range(STATES):
         y = (q + W @ t.ravel()).reshape(-1, 2)
