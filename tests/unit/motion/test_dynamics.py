@@ -453,3 +453,19 @@ def test_damping_that_damps_nothing_is_said(law: object, kind: object, idle: tup
         told = [line for line in found.verdict.attention if "nothing is damped by it" in line]
         assert len(told) == (1 if name in idle else 0)
     assert "damped" not in " ".join(concio.dynamics(column, duration=0.02, step=0.01).verdict.attention)
+
+
+@pytest.mark.parametrize("shape", ["half sine", "rectangular", "ricker"])
+def test_cycles_of_a_pulse_that_is_no_sine_are_refused(shape: str) -> None:
+    with pytest.raises(InputError, match="cycles = 3 are those of a sine"):
+        concio.Pulse(shape, 1.0, 0.2, cycles=3.0)
+    assert concio.Pulse("sine", 1.0, 0.2, cycles=3.0).duration == pytest.approx(0.6)
+
+
+def test_texts_for_numbers_of_a_signal_are_refused_in_words() -> None:
+    with pytest.raises(InputError, match=r"amplitude = '0\.1 g' is not a number"):
+        concio.Pulse("sine", "0.1 g", 0.2)  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="step = '10 ms' is not a number"):
+        concio.Record(np.ones(5), "10 ms")  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="a model is needed, list was given"):
+        concio.merge([standing(), standing()])  # type: ignore[arg-type]

@@ -15,7 +15,7 @@ from concio.model.generate.own_words import everything_of, own_words, pattern_of
 from concio.model.interfaces.detect import Detection, detect_interfaces
 from concio.model.interfaces.patches import detect_patches
 from concio.model.materials import JointLaw
-from concio.model.model import JointRule, Load, Model, Temperature
+from concio.model.model import JointRule, Load, Model, Temperature, require_model
 
 T = TypeVar("T")
 
@@ -68,6 +68,8 @@ def merged(models: Sequence[Model], *, title: str = "", joint: JointLaw | float 
     if not models:
         msg = "there is nothing to merge"
         raise InputError(msg, where="merge", hint="give two models or more")
+    for model in models:
+        require_model(model)
     first = models[0]
     for k, model in enumerate(models[1:], 2):
         if model.dim != first.dim:

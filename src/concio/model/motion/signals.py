@@ -43,6 +43,13 @@ class Signal(Protocol):
         """Return the displacement at times t [m]."""
 
 
+def _plain(what: str, value: object, where: str) -> None:
+    """Refuse a text where a plain number is needed."""
+    if isinstance(value, str):
+        msg = f"{what} = {value!r} is not a number"
+        raise InputError(msg, where=where, hint="accelerations are in m/s2, times in s, without a unit")
+
+
 @strict_class
 @dataclass(frozen=True, eq=False)
 class Record:
@@ -89,6 +96,7 @@ class Record:
             k = int(np.flatnonzero(~np.isfinite(values))[0])
             msg = f"sample {k + 1} is not a number: the record has a gap"
             raise InputError(msg, where=where, hint="fill the gap, or cut the record before it")
+        _plain("step", self.step, where)
         if not 0 < self.step <= LONGEST:
             msg = f"the time between samples, {self.step:g} s, must be positive and at most {LONGEST:g} s"
             raise InputError(msg, where=where)
@@ -154,7 +162,7 @@ class Pulse:
     length : float
         Duration of a rectangular pulse and of a half wave, period of a sine, 1/f of a Ricker pulse [s].
     cycles : float
-        Waves of a sine.
+        Waves of a sine; 1 for all others.
     name : str
 
     Examples
@@ -178,6 +186,11 @@ class Pulse:
         if self.shape not in SHAPES:
             msg = f"there is no pulse called '{self.shape}'"
             raise InputError(msg, hint="one of: " + ", ".join(SHAPES))
+        for what, value in (("amplitude", self.amplitude), ("length", self.length), ("cycles", self.cycles)):
+            _plain(what, value, f"{self.shape} pulse")
+        if self.cycles != 1.0 and self.shape != "sine":
+            msg = f"cycles = {self.cycles:g} are those of a sine"
+            raise InputError(msg, where=f"{self.shape} pulse", hint="leave cycles out, or take the pulse 'sine'")
         if not np.isfinite(self.amplitude):
             msg = "the amplitude is not finite"
             raise InputError(msg, where=f"{self.shape} pulse")
