@@ -137,6 +137,9 @@ class Vehicle:
             object.__setattr__(self, "position", quantity(self.position, "length", where=f"{where}, position"))
         if self.loaded is not None:
             object.__setattr__(self, "loaded", tuple(_part(p, where) for p in self.loaded))
+        if self.direction not in ("right", "left", "both"):
+            msg = f"direction = '{self.direction}' is not one of right, left, both"
+            raise InputError(msg, where=where)
         if not 1.0 <= self.dynamic <= 3.0:
             msg = f"dynamic = {self.dynamic:g} must lie between 1 and 3"
             raise InputError(msg, where=where, hint="1.8 means 80 % more")

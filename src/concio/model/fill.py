@@ -196,6 +196,10 @@ class Fill:
         if self.passive is not None and self.mobilised != 1.0:
             msg = "passive and mobilised are both given"
             raise InputError(msg, where=where, hint="passive is already m_p K_p: leave mobilised out")
+        idle = [key for key, stated in (("cohesion", self.cohesion), ("mobilised", self.mobilised != 1.0)) if stated]
+        if idle and self.friction_angle is None and self.passive is None:
+            msg = f"{idle[0]} is given without friction_angle: without it the fill presses nothing sideways"
+            raise InputError(msg, where=where, hint="add friction_angle (30 degrees, 0 undrained), or leave it out")
         if self.pressure not in ("none", "active", "at rest"):
             msg = f"pressure = '{self.pressure}' is not one of none, active, at rest"
             raise InputError(msg, where=where)

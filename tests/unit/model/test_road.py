@@ -335,3 +335,18 @@ def test_vehicles_whose_loads_have_no_source_are_named_with_the_reason(name: str
         concio.find_vehicle(name)
     assert words in (caught.value.hint or "")
     assert "your own is axles" in (caught.value.hint or "")
+
+
+@pytest.mark.parametrize("key", ["cohesion", "mobilised"])
+def test_strength_of_a_fill_without_an_angle_is_not_left_aside(key: str) -> None:
+    """A cohesion of 10 kPa without an angle of friction pressed nothing, without a word."""
+    with pytest.raises(InputError, match=f"{key} is given without friction_angle"):
+        Fill(cover=0.3, **{key: 0.5})  # type: ignore[arg-type]
+    undrained = Fill(cover=0.3, friction_angle=0.0, cohesion=10.0)
+    assert undrained.passive_cohesion == pytest.approx(20.0)  # 2 c
+    assert Fill(cover=0.3, passive=1.0, cohesion=10.0).passive_cohesion == pytest.approx(20.0)
+
+
+def test_a_direction_that_is_none_is_refused() -> None:
+    with pytest.raises(InputError, match="direction = 'west'"):
+        Vehicle("own", (Axle(0.0, 10.0),), direction="west")  # type: ignore[arg-type]
