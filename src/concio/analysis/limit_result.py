@@ -36,6 +36,9 @@ if TYPE_CHECKING:
 
 Array = np.ndarray
 
+NONE = 1e-12
+"""Upper bound, as a multiple of the load as given, that is zero up to rounding."""
+
 
 @dataclass(frozen=True, eq=False)
 class LimitResult(Shown):
@@ -218,8 +221,13 @@ class LimitResult(Shown):
 
     @property
     def none_of_it(self) -> bool:
-        """Whether it is proven that no multiple of the load is carried: nothing else acts, and one is not."""
+        """Whether it is proven that no multiple of the load is carried.
+
+        The upper bound is zero, or nothing else acts, so that all multiples are alike, and one is not carried.
+        """
         steps = self.steps
+        if self.associated.bounds_hold and abs(self.associated.upper) <= NONE:
+            return True
         alike = self.associated.locked and steps is not None and steps.state is None and len(steps.multipliers) == 1
         return alike and steps is not None and steps.outcome in PROVEN_FAILURES
 

@@ -21,7 +21,7 @@ import numpy as np
 from concio.problem.apart import own, solve_apart
 from concio.problem.certificate import certify
 from concio.problem.contact_problem import Array, ContactProblem
-from concio.problem.parts import Part
+from concio.problem.parts import Part, connected_parts
 from concio.problem.solution import ProgressCallback, Solution, Status
 from concio.problem.tolerances import CERTIFIED
 from concio.representation import short_repr
@@ -167,8 +167,8 @@ def by_scale(
 ) -> LoadSteps | None:
     """Return what is known of every multiple of a load from one of them; None where multiples are not alike.
 
-    Where nothing else acts and nothing has a size of its own, an answer times any factor is the answer to the load
-    times that factor, and the proof that there is none likewise.
+    Where nothing else acts on the parts of the load and nothing has a size of its own, an answer times any factor is the
+    answer to the load times that factor, and the proof that there is none likewise.
 
     Parameters
     ----------
@@ -177,19 +177,30 @@ def by_scale(
     live : (N,) array
     progress : callable, optional
     """
-    if dead.f.any() or not homogeneous(LinearPath(dead, live)):
+    loaded = _loaded(dead, live)
+    if dead.f[loaded].any() or not homogeneous(LinearPath(dead, live)):
         return None
-    answer = find("auto")(dead.with_loads(live), progress=progress)
+    answer = find("auto")(dead.with_loads(dead.f + live), progress=progress)
     nan, worst = float("nan"), answer.certificate.worst
     if answer.solved:
         return LoadSteps((0.0, 1.0), nan, None, worst, 1, Status.SOLVED, endless=worst)
+    failed = [one.bodies for one in answer.parts if one.status is not Status.SOLVED]
+    if not all(loaded[dead.bodies[bodies]].any() for bodies in failed):
+        return None  # what does not carry its dead load is another part
     return LoadSteps((0.0,), 1.0, None, 0.0, 1, Status.SOLVED, outcome=answer.status)
 
 
 def _unit(dead: ContactProblem, live: Array) -> float:
-    """Return the multiplier at which the live load is as large as the dead one; 1 where nothing else acts."""
-    own = float(np.abs(dead.f).sum())
+    """Return the multiplier at which the live load is as large as the dead one of its parts; 1 where that is none."""
+    own = float(np.abs(dead.f[_loaded(dead, live)]).sum())
     return own / float(np.abs(live).sum()) if own > 0 else 1.0
+
+
+def _loaded(dead: ContactProblem, live: Array) -> Array:
+    """Return which unknowns (N,) are of connected parts on which the live load acts."""
+    of_unknown = connected_parts(dead).of_unknown
+    found: Array = np.isin(of_unknown, of_unknown[live != 0])
+    return found
 
 
 def _smallest(carried: float, bound: float) -> float:

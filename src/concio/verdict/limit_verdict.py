@@ -144,6 +144,8 @@ def _design(found: LimitResult, question: Question) -> str:
             f"acts, and all "
             "multiples are equal."
         )
+    if found.none_of_it:
+        return f"No multiple of {groups} is carried: a mechanism proves that none is in equilibrium."
     if steps is not None and found.endless and steps.state is None:
         return (
             f"{groups} can grow without bound: it is carried as given, nothing else acts, and all multiples "
@@ -249,6 +251,8 @@ def _upper(found: LimitResult) -> str:
     bound, low = found.associated, found.design
     if found.endless:
         return "The bound of associated friction is locked, and the load is in fact unbounded."
+    if found.none_of_it and not bound.locked:
+        return ""
     if bound.locked:
         return f"There is no upper bound: {LOCKED}."
     if math.isnan(bound.multiplier):

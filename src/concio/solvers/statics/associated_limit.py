@@ -211,7 +211,7 @@ def programmed_limit(problem: ContactProblem, live: Array, method: Method | None
     velocity = problem.R @ (-result.marginals / programme.scale)
     upper, mechanism = kinematic_bound(problem, live, multiplier, velocity)
     residual = static_residual(problem, loaded, t_n, t_t)
-    return LimitLoad(multiplier, upper, t_n, t_t, residual, mechanism)
+    return LimitLoad(multiplier + 0.0, upper, t_n, t_t, residual, mechanism)
 
 
 def cone_limit(problem: ContactProblem, live: Array, target: float = CONE_TARGET) -> LimitLoad:
@@ -219,7 +219,7 @@ def cone_limit(problem: ContactProblem, live: Array, target: float = CONE_TARGET
     found = ConeStatics(problem, problem.f if problem.f.any() else live).largest(live, target=target)
     if np.isfinite(found.multiplier):
         upper, mechanism = kinematic_bound(problem, live, found.multiplier, found.velocity)
-        return LimitLoad(found.multiplier, upper, found.t[:, 0], found.t[:, 1:], found.residual, mechanism)
+        return LimitLoad(found.multiplier + 0.0, upper, found.t[:, 0], found.t[:, 1:], found.residual, mechanism)
     dead, alone = statically_admissible(problem), statically_admissible(without_bounds(problem, live))
     worst = max(dead.residual, alone.residual)  # a load on the edge of what can grow is balanced to rounding only
     if worst <= CHECKED:

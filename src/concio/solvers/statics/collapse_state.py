@@ -154,7 +154,7 @@ def judged(
     wrong = float(motion.flow_error(problem, t_n, t_t).max(initial=0.0)) / size
     flow = max(wrong, motion.penetration())
     statics = static_residual(problem, load, t_n, t_t)
-    return CollapseState(multiplier, t_n, t_t, motion.velocity, statics, flow, iterations)
+    return CollapseState(multiplier + 0.0, t_n, t_t, motion.velocity, statics, flow, iterations)
 
 
 def _programmed(
