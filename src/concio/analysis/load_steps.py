@@ -167,8 +167,8 @@ def by_scale(
 ) -> LoadSteps | None:
     """Return what is known of every multiple of a load from one of them; None where multiples are not alike.
 
-    Where nothing else acts on the parts of the load and nothing has a size of its own, an answer times any factor is the
-    answer to the load times that factor, and the proof that there is none likewise.
+    Where nothing else acts on the parts of the load and nothing has a size of its own, an answer times any factor is
+    the answer to the load times that factor, and the proof that there is none likewise.
 
     Parameters
     ----------
