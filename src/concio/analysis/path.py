@@ -105,10 +105,10 @@ def run_path(
     method = method or ("events" if assembly.model.dim == 2 else "steps")
     if method == "events" and assembly.model.dim != 2:
         msg = "paths event by event are for models in the plane; the model is in space"
-        raise InputError(msg, hint="use method='steps'")
+        raise InputError(msg, hint="follow it in steps: method='steps', or --method steps")
     if brittle and method == "events":
         msg = "joints that break are followed in steps only"
-        raise InputError(msg, hint="use method='steps'")
+        raise InputError(msg, hint="follow it in steps: method='steps', or --method steps")
     factors = at_zero(assembly)
     state: PathState | None = None
     if restart is not None:

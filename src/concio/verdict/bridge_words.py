@@ -58,7 +58,7 @@ ENGLISH: Mapping[str, str] = {
     "apart": "the second vehicle was placed at {count} distances from the first ({distances}); other distances, "
     "and one vehicle alone, were not",
     "spandrels": "spandrel walls count by their weight alone",
-    "brackets": "what Coulomb friction carries at most was sought at {count} positions only",
+    "brackets": "positions at which what Coulomb friction carries at most was sought: {count}",
     "unchecked_coulomb": "Coulomb friction at the other positions (asked for at none)",
     "unchecked_some": "Coulomb friction at {rest} of {all} positions: there the bound alone was computed",
     "unchecked_crushing": "crushing: the joints have no compressive strength",
@@ -121,7 +121,7 @@ ITALIAN: Mapping[str, str] = {
     "apart": "il secondo veicolo è stato esaminato a {count} distanze dal primo ({distances}); altre distanze, e "
     "un veicolo solo, no",
     "spandrels": "i timpani contano solo con il loro peso",
-    "brackets": "quanto porta al massimo l'attrito di Coulomb è stato cercato solo in {count} posizioni",
+    "brackets": "posizioni in cui è stato cercato quanto porta al massimo l'attrito di Coulomb: {count}",
     "unchecked_coulomb": "l'attrito di Coulomb nelle altre posizioni (non chiesto in alcuna)",
     "unchecked_some": "l'attrito di Coulomb in {rest} di {all} posizioni: lì è stato calcolato solo il limite",
     "unchecked_crushing": "lo schiacciamento: i giunti non hanno resistenza a compressione",

@@ -27,6 +27,9 @@ MOST_FALLEN = 3
 CLOSES = 1e-3
 """Error of the energy balance, over what was turned over, beyond which it is pointed out."""
 
+LEAST_GRAVITY, MOST_GRAVITY = 1.0, 30.0
+"""Accelerations of gravity [m/s2] outside of which another unit was meant."""
+
 OUTRAN = "too fast for the shortest step"
 HEADLINES = {
     Outcome.HOLDS: "The structure withstands the motion and comes to rest.",
@@ -238,7 +241,14 @@ def _noticed(found: DynamicsResult) -> tuple[str, ...]:
     )
     odd = (f"the energy balance is off by {_of_what(found)}: take a smaller step",)
     more = (*(late if _nothing_left(found) else ()), *(odd if found.energy.error > CLOSES else ()))
-    return (*found.notes, *_idle_damping(found), *more)
+    return (*found.notes, *_idle_damping(found), *_own_gravity(found), *more)
+
+
+def _own_gravity(found: DynamicsResult) -> tuple[str, ...]:
+    """Return a sentence on a gravity that is none of a planet's."""
+    if LEAST_GRAVITY <= found.gravity <= MOST_GRAVITY:
+        return ()
+    return (f"masses are weights over a gravity of {number(found.gravity, 4)} m/s2; on Earth it is 9.81 m/s2",)
 
 
 def _idle_damping(found: DynamicsResult) -> tuple[str, ...]:

@@ -14,6 +14,7 @@ from concio.verdict.verdict import Outcome, Verdict
 
 if TYPE_CHECKING:
     from concio.analysis.motion.let_go import LetGo
+    from concio.verdict.question import Question
 
 NEAR = 0.1
 """Share of the width of a body by which it may have moved where what is at rest is still the structure described."""
@@ -26,6 +27,7 @@ HEADLINES = {
     Outcome.MOVING: "Released at rest, it still moves where the calculation ends.",
     Outcome.UNDECIDED: "It is not known whether the loads are carried.",
 }
+FALLS_THOUGH_SOLVED = "In equilibrium at small displacements, but released at rest it falls."
 MEANINGS = {
     Outcome.HOLDS: (
         "No equilibrium in one step from rest was found, and none was shown to be impossible. So the structure was "
@@ -66,7 +68,8 @@ NEXT = (
 def let_go_verdict(found: LetGo) -> Verdict:
     """Return the verdict of a load step and of the motion after it.
 
-    A load step that is decided keeps its outcome: what was seen is stated beside it.
+    A load step that is decided keeps its outcome: what was seen is stated beside it. Only an equilibrium at small
+    displacements of what falls is left open: the structure holds by a motion too large for it, or by its history.
 
     Parameters
     ----------
@@ -74,7 +77,10 @@ def let_go_verdict(found: LetGo) -> Verdict:
     """
     step, motion = found.step.verdict, found.motion.verdict
     question = replace(step.question, asked=step.question.asked + ASKED)
-    if OUTCOMES[found.step.status] is not Outcome.UNDECIDED:
+    decided = OUTCOMES[found.step.status]
+    if decided is Outcome.HOLDS and found.motion.fallen:
+        return _falls(found, question)
+    if decided is not Outcome.UNDECIDED:
         return replace(step, question=question, answer=f"{step.answer} {_seen(found)}")
     outcome = _outcome(found)
     limits = [*step.limits, *(line for line in motion.limits if line not in step.limits), ONE_MOTION]
@@ -92,6 +98,22 @@ def let_go_verdict(found: LetGo) -> Verdict:
         unchecked=motion.unchecked if outcome is Outcome.INCOMPLETE and not found.motion.rests else (),
         attention=tuple(dict.fromkeys((*step.attention, *motion.attention))),
         next_steps=NEXT,
+    )
+
+
+def _falls(found: LetGo, question: Question) -> Verdict:
+    """Return the verdict of a structure with an equilibrium at small displacements that was seen to fall."""
+    step, motion = found.step.verdict, found.motion.verdict
+    return replace(
+        step,
+        outcome=Outcome.INCOMPLETE,
+        status=STATUSES[Outcome.FAILS],
+        question=question,
+        headline=FALLS_THOUGH_SOLVED,
+        answer=f"{step.answer} {_seen(found)}",
+        meaning=f"{step.meaning} {MEANINGS[Outcome.FAILS]}",
+        limits=tuple(dict.fromkeys((*step.limits, *motion.limits, ONE_MOTION))),
+        attention=tuple(dict.fromkeys((*step.attention, *motion.attention))),
     )
 
 

@@ -16,6 +16,7 @@ from concio.analysis.motion.dynamics_result import Ending
 from concio.analysis.motion.state import MotionState
 from concio.contact.reference import Reference
 from concio.errors import InputError
+from concio.verdict.italian import italian
 from concio.verdict.verdict import Outcome
 from motion_models import G, standing
 from samples import first, sample
@@ -453,6 +454,16 @@ def test_damping_that_damps_nothing_is_said(law: object, kind: object, idle: tup
         told = [line for line in found.verdict.attention if "nothing is damped by it" in line]
         assert len(told) == (1 if name in idle else 0)
     assert "damped" not in " ".join(concio.dynamics(column, duration=0.02, step=0.01).verdict.attention)
+
+
+@pytest.mark.parametrize(("gravity", "odd"), [(9.81, False), (1.62, False), (9810.0, True), (0.00981, True)])
+def test_a_gravity_in_other_units_is_said(gravity: float, odd: bool) -> None:
+    """9,810 mm/s2 made masses a thousandth of theirs."""
+    column = concio.column(width=0.5, height=0.5, blocks=1, block="rigid")
+    told = concio.dynamics(column, duration=0.01, step=0.005, gravity=gravity).verdict.attention
+    said = [line for line in told if line.startswith("masses are weights over a gravity of")]
+    assert len(said) == odd
+    assert all(piece.language == "it" for line in said for piece in italian(line))
 
 
 @pytest.mark.parametrize("shape", ["half sine", "rectangular", "ricker"])

@@ -14,7 +14,10 @@ from concio.analysis.motion import let_go as module
 from concio.analysis.step import solve
 from concio.errors import InputError
 from concio.problem.solution import Status
+from concio.verdict.italian import italian
 from concio.verdict.verdict import Outcome
+from models import box
+from models import model_of as plane_model
 from space_models import UNIT, model_of
 from space_motions import blocks
 from space_problems import dome, wall
@@ -97,6 +100,32 @@ def test_what_comes_to_rest_elsewhere_is_another_structure():
     assert found.motion.rests
     assert found.moved[1] == pytest.approx(0.1, rel=1e-3)
     assert (found.verdict.outcome, found.verdict.status) == (Outcome.INCOMPLETE, "rests_elsewhere")
+
+
+@pytest.mark.parametrize(("stiffness", "status"), [(10.0, "seen_to_fall"), (1e3, "solved")])
+def test_what_falls_is_not_carried_though_it_rests_at_small_displacements(stiffness, status):
+    """A tie that pulls 4 kN at the head of a column of 10 kN: its toe carries 2.5 kN m, and a soft tie lets it lean."""
+    model = plane_model(
+        box("ground", -3.0, 3.0, -1.0, 0.0, kind="fixed"),
+        box("column", -0.25, 0.25, 0.0, 1.0, kind="rigid"),
+        law=0.5,
+        materials={"block": concio.Rigid(20.0)},
+        loads=(concio.Load("weight", (0.0, -1.0)),),
+    )
+    tie = concio.Tie(
+        "tie", body_a="column", at_a=(0.25, 1.0), body_b="", at_b=(3.0, 1.0), stiffness=stiffness, prestress=4.0
+    )
+    step = concio.solve(replace(model, ties=(tie,)), on_failure="return")
+    assert step.solved
+    found = concio.let_go(step)
+    assert found.verdict.status == status
+    assert bool(found.motion.fallen) == (status == "seen_to_fall")
+    if found.motion.fallen:
+        assert found.verdict.outcome is Outcome.INCOMPLETE
+        assert found.verdict.headline == "In equilibrium at small displacements, but released at rest it falls."
+        assert {piece.language for piece in italian(found.verdict.headline)} == {"it"}
+    else:
+        assert found.verdict.outcome is Outcome.HOLDS
 
 
 def test_supports_that_move_leave_no_place_to_let_go_from():
