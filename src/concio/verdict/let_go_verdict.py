@@ -102,7 +102,7 @@ def let_go_verdict(found: LetGo) -> Verdict:
 
 
 def _falls(found: LetGo, question: Question) -> Verdict:
-    """Return the verdict of a structure with an equilibrium at small displacements that was seen to fall."""
+    """Return the verdict of a structure with an equilibrium at small displacements that falls when it is released."""
     step, motion = found.step.verdict, found.motion.verdict
     return replace(
         step,
