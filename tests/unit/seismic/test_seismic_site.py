@@ -122,9 +122,12 @@ def test_bad_sites_are_refused_in_a_sentence(change: dict[str, object], said: st
     assert said in str(error.value)
 
 
-def test_acceleration_may_be_given_with_its_unit() -> None:
-    place = site(hazard={"SLV": {"a_g": "1.962 m/s2", "F0": 2.45, "Tc": "0.32 s"}})
+@pytest.mark.parametrize("a_g", ["1.962 m/s2", "196.2 cm/s2", "0.2 g", "0.2g", 0.2])
+@pytest.mark.parametrize("Tc", ["0.32 s", "320 ms", 0.32])
+def test_acceleration_and_period_may_be_given_with_their_unit(a_g: float | str, Tc: float | str) -> None:
+    place = site(hazard={"SLV": {"a_g": a_g, "F0": 2.45, "Tc": Tc}})
     assert place.at("SLV").a_g == pytest.approx(0.20)
+    assert place.at("SLV").T_star == pytest.approx(0.32)
     assert Hazard(475.0, 0.2).F0 == 2.5
 
 

@@ -283,7 +283,7 @@ def _hazard(given: Any, where: str) -> Hazard:
 
 
 def _number(value: Any, key: str, where: str) -> float:
-    """Return a number of the hazard; texts may say g, m/s2, s or years."""
+    """Return a number of the hazard; texts may say g, m/s2, cm/s2, s, ms or years."""
     if isinstance(value, str):
         for unit, factor in _UNITS.get(key, {}).items():
             if value.strip().endswith(unit):
@@ -291,7 +291,12 @@ def _number(value: Any, key: str, where: str) -> float:
     return quantity(value, "number", where=f"{where}, {key}")
 
 
-_UNITS = {"a_g": {"m/s2": 1.0 / 9.81, "g": 1.0}, "Tc": {"s": 1.0}, "T_R": {"years": 1.0, "anni": 1.0}}
+_UNITS = {
+    "a_g": {"cm/s2": 0.01 / 9.81, "m/s2": 1.0 / 9.81, "g": 1.0},
+    "Tc": {"ms": 1e-3, "s": 1.0},
+    "T_R": {"years": 1.0, "anni": 1.0},
+}
+"""Units that texts may end in; those that end in another one come before it."""
 
 
 def _mode(given: Any) -> Mode | Storeys:
