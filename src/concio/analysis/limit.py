@@ -30,7 +30,7 @@ from concio.analysis.lent_compliance import lent_assembly
 from concio.analysis.limit_result import LimitResult
 from concio.analysis.limit_ties import whole_up_to
 from concio.analysis.limit_torsion import SPREAD, spread_steps, twisted_joints
-from concio.analysis.load_steps import by_scale, in_one_step, load_steps
+from concio.analysis.load_steps import by_scale, in_one_step, load_steps, unit_of_load
 from concio.analysis.margin_of import MarginOf
 from concio.analysis.tie_forces import without_breakable
 from concio.arguments import closest, strict
@@ -165,7 +165,10 @@ def limit_stages(
         asked = "the largest multiplier"
         told = not_standing(assembly, asked, DEAD_NOT_CARRIED, multiplied=groups)
         raise NoEquilibriumError(of_the_joints(DEAD_NOT_CARRIED, assembly.detection), hint=hint, verdict=told)
-    found = LimitResult(assembly, associated_limit(dead, load), groups, lent_compliance=assembly.lent_compliance)
+    found = LimitResult(
+        assembly, associated_limit(dead, load), groups, lent_compliance=assembly.lent_compliance,
+        unit=unit_of_load(dead, load),
+    )  # fmt: skip
     if (bare := without_breakable(assembly, dead)) is not None:
         found = replace(found, untied=associated_limit(bare, load))
     yield "bound", found

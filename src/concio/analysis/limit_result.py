@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 Array = np.ndarray
 
 NONE = 1e-12
-"""Upper bound, as a multiple of the load as given, that is zero up to rounding."""
+"""Upper bound that is zero up to rounding, over :attr:`LimitResult.unit`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +82,8 @@ class LimitResult(Shown):
         The bound without the ties that can break; None where none can.
     ties_whole : float
         Largest multiplier that the exact path reaches before a tie breaks; ``nan`` where none does on it.
+    unit : float
+        Multiplier at which the load is as large as the constant loads of its parts; 1 where these are none.
     """
 
     assembly: Assembly
@@ -101,6 +103,7 @@ class LimitResult(Shown):
     spread: SpreadSteps | None = None
     untied: LimitLoad | None = None
     ties_whole: float = float("nan")
+    unit: float = 1.0
 
     def __repr__(self) -> str:
         title, *lines = limit_lines(self)
@@ -226,7 +229,7 @@ class LimitResult(Shown):
         The upper bound is zero, or nothing else acts, so that all multiples are alike, and one is not carried.
         """
         steps = self.steps
-        if self.associated.bounds_hold and abs(self.associated.upper) <= NONE:
+        if self.associated.bounds_hold and abs(self.associated.upper) <= NONE * self.unit:
             return True
         alike = self.associated.locked and steps is not None and steps.state is None and len(steps.multipliers) == 1
         return alike and steps is not None and steps.outcome in PROVEN_FAILURES

@@ -127,7 +127,7 @@ def load_steps(
     state = state_of(path, 0.0, first.displacement, first.normal_force, first.friction_force)
     before, reached, failed, solves, worst = state, [0.0], float("nan"), 1, first.certificate.worst
     locked = not np.isfinite(bound)
-    unit = _unit(dead, live) if locked else bound
+    unit = unit_of_load(dead, live) if locked else bound
     size = FIRST * unit
     while size > (smallest := finest * _smallest(reached[-1], failed if locked and failed == failed else unit)):
         trial = reached[-1] + size
@@ -190,7 +190,7 @@ def by_scale(
     return LoadSteps((0.0,), 1.0, None, 0.0, 1, Status.SOLVED, outcome=answer.status)
 
 
-def _unit(dead: ContactProblem, live: Array) -> float:
+def unit_of_load(dead: ContactProblem, live: Array) -> float:
     """Return the multiplier at which the live load is as large as the dead one of its parts; 1 where that is none."""
     own = float(np.abs(dead.f[_loaded(dead, live)]).sum())
     return own / float(np.abs(live).sum()) if own > 0 else 1.0

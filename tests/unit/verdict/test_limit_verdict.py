@@ -112,6 +112,21 @@ def test_a_load_without_any_other_is_carried_at_any_multiple_or_at_none(seed: in
     assert concio.solve(model, on_failure="return").solved == carried
 
 
+@pytest.mark.parametrize("scale", [1e-14, 1.0, 1e14])
+@pytest.mark.parametrize("carried", [True, False])
+def test_the_size_of_the_load_as_given_decides_nothing(scale: float, carried: bool) -> None:
+    """A pillar of 12.8 kN tips over at 2 kN; without weight it carries nothing."""
+    model = pillar((scale, 0.0), at=1.2)
+    if not carried:
+        model = replace(model, loads=model.loads[1:])
+    found = concio.limit(model, path=False, search=False)
+    if carried:
+        assert found.associated.multiplier * scale == pytest.approx(12.8 * 0.2 / 1.2, rel=1e-6)
+        assert found.verdict.outcome is Outcome.HOLDS
+    else:
+        assert found.verdict.headline == "No multiple of 'live' is carried."
+
+
 def test_where_locking_is_right_it_is_said_why() -> None:
     found = concio.limit(pillar((0.0, -1.0)))
     assert found.endless
