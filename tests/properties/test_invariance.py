@@ -182,3 +182,36 @@ def test_every_answer_is_complementary(wall):
     slipping = np.abs(slip) > 1e-7 * length
     np.testing.assert_allclose(friction[slipping], -np.sign(slip[slipping]) * strength[slipping], atol=1e-8 * force)
     assert (friction * slip).max() <= 1e-9 * force * length
+
+
+def leaning(seed):
+    """Two courses of elastic trapezia whose meshes do not match, with a tie and a force at points inside of one."""
+    rng = np.random.default_rng(seed)
+    cuts = [[0.0, *(0.6 + 0.15 * rng.uniform(-1, 1, 1)), 1.2], [0.0, *([0.3, 0.9] + 0.1 * rng.uniform(-1, 1, 2)), 1.2]]
+    lean, height = 0.1 * rng.uniform(-1, 1, 4), [0.0, 0.4 + 0.05 * rng.uniform(-1, 1), 0.8]
+    bodies = [concio.Body("ground", [(-1, -0.5), (2, -0.5), (2, 0), (-1, 0)], kind="fixed")]
+    for j, at in enumerate(cuts):
+        e = [0.0, *lean[2 * j : 2 * j + len(at) - 2], 0.0]
+        for k in range(len(at) - 1):
+            low, high = height[j], height[j + 1]
+            foot, head = (at[k] - e[k], at[k + 1] - e[k + 1]), (at[k + 1] + e[k + 1], at[k] + e[k])
+            points = [(foot[0], low), (foot[1], low), (head[0], high), (head[1], high)]
+            bodies.append(concio.Body(f"c{j}{k}", points, thickness=0.4))
+    at = tuple(float(v) for v in bodies[-1].centroid)
+    return concio.Model(
+        tuple(bodies),
+        {"block": concio.Elastic(E=1e5, nu=0.2, unit_weight=20.0)},
+        {"joint": JointLaw(0.6, normal_stiffness=2e5, tangential_stiffness=8e4)},
+        loads=(Load("weight", (0.0, -1.0)), Load("point", (0.4, -1.0), bodies=(bodies[-1].name,), at=at)),
+        ties=(Tie("rod", bodies[-1].name, at, "", (3.0, 1.0), 500.0, 0.5),),
+    )
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_points_inside_elastic_blocks_and_meshes_that_do_not_match(seed):
+    model = leaning(seed)
+    first = concio.solve(model)
+    second = concio.solve(mirrored(model))
+    same(body_forces(first), {n: f * [-1, 1] for n, f in body_forces(second).items()}, 1e-9)
+    third = concio.solve(renumbered(model, np.random.default_rng(seed).permutation(len(model.bodies))))
+    same(corner_displacements(first), corner_displacements(third), 1e-9)

@@ -30,6 +30,10 @@ MERGED = 1e-3
 """Nodes nearer to a cut than this share of the shortest element share its point: two rows of one place are singular."""
 
 
+EVEN = 1e-6
+"""Lines whose squared distances of nodes add up to the same but for this share are even alike."""
+
+
 @dataclass(frozen=True)
 class Line:
     """Nodes of one side along the segment.
@@ -126,12 +130,23 @@ def couple(a: Line | None, b: Line | None, length: float, points: int = 2) -> Co
         pair = np.arange(len(a.at))
         one = np.ones(len(pair))
         return Coupling(a.at, weights, Side(pair, a.nodes, one), Side(pair, b.nodes, one), "node pairs")
-    if a is None or (b is not None and len(b.at) > len(a.at)):
+    if a is None or (b is not None and _finer(b, a)):
         assert b is not None
         at, weights, own, other = _mortar(b, a, length)
         return Coupling(at, weights, other, own)
     at, weights, own, other = _mortar(a, b, length)
     return Coupling(at, weights, own, other)
+
+
+def _finer(line: Line, other: Line) -> bool:
+    """Return whether a line has more nodes than another one, or as many at more even distances.
+
+    The numbering of the bodies does not decide it, except between lines that are alike or mirror images.
+    """
+    if len(line.at) != len(other.at):
+        return len(line.at) > len(other.at)
+    own, others = (float((np.diff(side.at) ** 2).sum()) for side in (line, other))
+    return own < (1 - EVEN) * others
 
 
 def _mortar(slave: Line, master: Line | None, length: float) -> tuple[Array, Array, Side, Side | None]:

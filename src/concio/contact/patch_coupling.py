@@ -23,7 +23,7 @@ import numpy as np
 import scipy  # its parts are loaded when they are used: scipy.spatial takes long
 import shapely
 
-from concio.contact.coupling import Side
+from concio.contact.coupling import EVEN, Side
 from concio.fem.facets import FacetMesh, functions, local_coordinates, quadrature
 from concio.fem.solid import triangles_in
 from concio.model.overlay import common
@@ -91,7 +91,7 @@ def couple_faces(a: FaceSide | None, b: FaceSide | None, patch: shapely.Polygon)
         found = _matching(a, b, patch)
         if found is not None:
             return found
-    if a is None or (b is not None and _nodes_in(b, patch) > _nodes_in(a, patch)):
+    if a is None or (b is not None and _finer(b, a, patch)):
         assert b is not None
         at, area, own, other = _mortar(b, a, patch)
         return PatchCoupling(at, area, other, own, "dual mortar")
@@ -121,6 +121,18 @@ def _quartered(triangles: Array) -> Array:
     p, q, r = (a + b) / 2, (b + c) / 2, (c + a) / 2
     four = np.stack([np.stack(v, 1) for v in ((a, p, r), (p, b, q), (r, q, c), (p, q, r))], 1)
     return np.reshape(four, (-1, 3, 2))
+
+
+def _finer(side: FaceSide, other: FaceSide, patch: shapely.Polygon) -> bool:
+    """Return whether a side has more nodes in the patch than another one, or as many on facets more alike in area.
+
+    The numbering of the bodies does not decide it, except between sides that are alike or mirror images.
+    """
+    first, second = _nodes_in(side, patch), _nodes_in(other, patch)
+    if first != second:
+        return first > second
+    own, others = (float((shapely.area(_covering(mesh, patch)[1]) ** 2).sum()) for mesh in (side, other))
+    return own < (1 - EVEN) * others
 
 
 def _nodes_in(side: FaceSide, patch: shapely.Polygon) -> int:

@@ -10,7 +10,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from concio.errors import InputError
-from concio.fem.elements import TETRAHEDRA
+from concio.fem.interpolation import interpolated
 from concio.fem.plane_shape import Plan, plane_shape
 from concio.fem.shape import Shape
 from concio.fem.solid import SolidShape
@@ -140,28 +140,6 @@ class Discretisation:
 def _deforms_as(new: Elastic | Rigid, old: Elastic | Rigid | None) -> bool:
     """Return whether two materials have the same stiffness."""
     return isinstance(new, Elastic) and isinstance(old, Elastic) and (new.E, new.nu) == (old.E, old.nu)
-
-
-def interpolated(nodes: Array, cells: Array, point: Array) -> tuple[Array, Array]:
-    """Return corner nodes and linear weights of a point, by splitting elements into simplices; none where it is out."""
-    simplices = np.vstack([cells[:, list(corners)] for corners in SIMPLICES[nodes.shape[1], cells.shape[1]]])
-    first = nodes[simplices[:, 0]]
-    edges = np.moveaxis(nodes[simplices[:, 1:]] - first[:, None], 1, 2)
-    inner = np.linalg.solve(edges, (point - first)[..., None])[..., 0]
-    weights = np.column_stack([1 - inner.sum(1), inner])
-    best = int(np.argmax(weights.min(axis=1)))
-    if weights[best].min() < -1e-6:
-        return np.zeros(0, dtype=int), np.zeros(0)
-    return simplices[best], weights[best]
-
-
-SIMPLICES: dict[tuple[int, int], tuple[tuple[int, ...], ...]] = {
-    (2, 3): ((0, 1, 2),),
-    (2, 4): ((0, 1, 2), (0, 2, 3)),
-    (3, 4): ((0, 1, 2, 3),),
-    (3, 8): TETRAHEDRA,
-}
-"""Corners of the simplices that fill an element, by dimension and number of its corners."""
 
 
 def discretise(model: Model, breaks: Mapping[int, Sequence[Any]] | None = None) -> Discretisation:

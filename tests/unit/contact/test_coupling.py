@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+import concio
 from concio.contact.coupling import Coupling, Line, couple, cut, match
 from concio.fem.edge_integral import edge_weights
 
@@ -127,3 +130,36 @@ def test_nodes_near_a_cut_are_those_within_a_thousandth_of_the_shortest_element(
         found = couple(line(at), None, 1.0)
         assert len(found.at) == len(points)
         assert found.length.sum() == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("a", "b"),
+    [
+        ([0, 0.11, 0.23, 0.34], [0, 0.06, 0.2, 0.34]),  # as many nodes, at other places
+        ([-0.05, 0.1, 0.2, 0.34], [0, 0.1, 0.2, 0.34]),
+        ([0, 0.1, 0.34], [0, 0.06, 0.2, 0.34]),
+    ],
+)
+def test_the_order_of_the_bodies_does_not_choose_the_side_with_the_pairs(a, b):
+    a, b = line(a), line(b, first=10)
+    one, other = couple(a, b, 0.34), couple(b, a, 0.34)
+    np.testing.assert_array_equal(one.at, other.at)
+    np.testing.assert_array_equal(one.a.node, other.b.node)
+    np.testing.assert_array_equal(one.b.weight, other.a.weight)
+
+
+def brick(name, xs, low, high):
+    """A block of hexahedra with corners at the places ``xs``."""
+    grid = np.stack(np.meshgrid(xs, [0.0, 0.2, 0.4], [low, (low + high) / 2, high], indexing="ij"), -1)
+    return replace(concio.Polyhedron.box(name, (xs[0], 0.0, low), (xs[-1], 0.4, high)), grid=grid)
+
+
+def test_nor_does_it_in_space():
+    ground = concio.Polyhedron.box("ground", (-1, -1, -0.3), (2, 2, 0), kind="fixed")
+    blocks = [brick("even", [0, 0.2, 0.4, 0.6], 0, 0.3), brick("uneven", [0, 0.1, 0.35, 0.6], 0.3, 0.6)]
+    materials, laws = {"block": concio.Elastic(1e5, 0.2, 20.0)}, {"joint": concio.JointLaw(0.6)}
+    for order in (blocks, blocks[::-1]):
+        model = concio.Model((ground, *order), materials, laws, loads=(concio.Load("weight", (0, 0, -1)),))
+        pairs = concio.assemble(model).pairs
+        between = (pairs.body_a > 0) & (pairs.body_b > 0)
+        assert set(pairs.point[between, 0].round(9)) == {0.0, 0.2, 0.4, 0.6}
