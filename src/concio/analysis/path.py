@@ -264,15 +264,19 @@ def _finite_steps(stage: Stage, exact: EventPath) -> list[str]:
     found = []
     if jumps:
         found.append(
-            f"stage '{stage.name}': {counted(len(jumps), 'jump')}, the first at {jumps[0]:.6g}: no state follows on "
-            "the one before, and the path goes on from the state in equilibrium found under a slightly larger load"
+            f"stage '{stage.name}': {_counted_at(jumps, 'jump')}: no state follows on the one before, and the path "
+            "goes on from the state in equilibrium found under a slightly larger load"
         )
     if restarts:
         found.append(
-            f"stage '{stage.name}': {counted(len(restarts), 'finite step')}, the first at {restarts[0]:.6g}, where no "
-            "rates were found that continue the path"
+            f"stage '{stage.name}': {_counted_at(restarts, 'finite step')}, where no rates were found that continue "
+            "the path"
         )
     return found
+
+
+def _counted_at(where: list[float], word: str) -> str:
+    return f"{counted(len(where), word)}, {'the first ' * (len(where) > 1)}at {where[0]:.6g}"
 
 
 def _target(assembly: Assembly, factors: Mapping[str, float], stage: Stage) -> dict[str, float]:

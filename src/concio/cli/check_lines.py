@@ -17,6 +17,7 @@ from concio.model.model import Body, Model
 from concio.model.polyhedron import Polyhedron
 from concio.verdict.attention import attention_of, noted, torsion
 from concio.verdict.lost_loads import load_words
+from concio.verdict.question import assumed_words
 
 MOST_LINES = 20
 """More findings than this are counted, unless all are asked for."""
@@ -73,6 +74,7 @@ def check_lines(
         lines.append(f"cell         repeats by ({a:.6g}, {b:.6g}) and ({c:.6g}, {d:.6g}) m{voids}")
     lines += [f"material     {name}: {material_words(given, units)}" for name, given in model.materials.items()]
     lines += [f"joint law    {name}: {law_words(law, units)}" for name, law in model.laws.items()]
+    lines += [f"assumed      {line}" for line in assumed_words(model)]
     lines += _interfaces(model, detection)
     if facts:
         stated = ", ".join(f"{count:,} {name}" for name, count in facts["contact_model"].items())

@@ -106,7 +106,9 @@ def path_facts(found: PathResult, point: ControlPoint) -> dict[str, Any]:
     }
 
 
-def write_path(found: PathResult, point: ControlPoint, place: Path, language: Literal["en", "it"]) -> None:
+def write_path(
+    found: PathResult, point: ControlPoint, place: Path, language: Literal["en", "it"], *, first: str = ""
+) -> None:
     """Write summary, curve, events, figure, a report with a slider of load steps, and the last state's results."""
     from matplotlib.figure import Figure
 
@@ -121,4 +123,4 @@ def write_path(found: PathResult, point: ControlPoint, place: Path, language: Li
     for form in ("png", "svg"):
         figure.savefig(place / f"path.{form}", dpi=150)
     write_result(found.result(), place / "end", report=False)
-    write_path_report(found, place / "report.html", point=point, language=language)
+    write_path_report(found, place / "report.html", point=point, language=language, first=first)

@@ -7,12 +7,10 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-import numpy as np
-
 from concio.cli.path_lines import path_facts, path_lines, write_path
-from concio.display import number
 from concio.io.csv_table import write_csv
 from concio.post.path_curve import most_moving
+from concio.report.settlement_part import end_words, reaction_rows, settlement_html
 
 if TYPE_CHECKING:
     from concio.analysis.settlement import SettlementResult
@@ -20,18 +18,14 @@ if TYPE_CHECKING:
 
 def settle_lines(found: SettlementResult, *, every: bool) -> list[str]:
     """Return a settlement as lines of text: what moves, its path, and the reactions before it and at its end."""
-    path, model = found.path, found.path.assembly.model
-    title, *rest = path_lines(path, most_moving(path), every=every)
-    return [title, *rest, *(f"  movement     {line}" for line in found.movement), *_reactions(found, model.report)]
+    title, *rest = path_lines(found.path, most_moving(found.path), every=every)
+    return [title, *rest, *(f"  movement     {line}" for line in found.movement), *_reactions(found)]
 
 
-def _reactions(found: SettlementResult, units: Any) -> Iterator[str]:
-    yield f"  reactions    before the movement | at {number(float(found.share[-1]), 4)} of it"
-    for name, force in found.reactions.items():
-        size = float(np.abs(force).max(initial=0.0))
-        if size:
-            first, last = (f"({units.force_vector(force[k], size=size)})" for k in (0, -1))
-            yield f"  {name:<12} {first} | {last}"
+def _reactions(found: SettlementResult) -> Iterator[str]:
+    yield f"  reactions    before the movement | {end_words(found)}"
+    for name, first, last in reaction_rows(found):
+        yield f"  {name:<12} ({first}) | ({last})"
 
 
 def settle_facts(found: SettlementResult) -> dict[str, Any]:
@@ -47,7 +41,7 @@ def settle_facts(found: SettlementResult) -> dict[str, Any]:
 
 def write_settlement(found: SettlementResult, place: Path, language: Literal["en", "it"]) -> list[str]:
     """Write what a path writes, the summary with the movement, and the reactions at each share of it."""
-    write_path(found.path, most_moving(found.path), place, language)
+    write_path(found.path, most_moving(found.path), place, language, first=settlement_html(found))
     text = json.dumps(settle_facts(found), indent=2, ensure_ascii=False, allow_nan=False)
     (place / "summary.json").write_text(text + "\n", encoding="utf-8")
     write_csv(found.table(), place / "reactions.csv")

@@ -214,7 +214,7 @@ def _model(result: Result) -> str:
         contacts = result.contacts
         rows.append(("largest settlement", units.text("motion", result.max_settlement)))
         rows.append(("contact pairs", contacts.counted))
-    if "total" in result.seconds:
+    if result.seconds.get("total"):
         spent = f"{result.solution.iterations} iterations, {result.seconds['total']:.2g} s"
         rows.append(("solved by", f"{result.solved_by}, {spent}"))
     cells = "".join(f"<tr><th>{escape(k)}</th><td>{escape(v)}</td></tr>" for k, v in rows)

@@ -34,8 +34,9 @@ MOST_EVENTS = 250
 
 @strict
 def write_path_report(
-    found: PathResult, path: Path | str, *, point: ControlPoint | None = None, language: Language = "en"
-) -> Path:
+    found: PathResult, path: Path | str, *, point: ControlPoint | None = None, language: Language = "en",
+    first: str = "",
+) -> Path:  # fmt: skip
     """Write the report of a load path.
 
     Parameters
@@ -45,6 +46,8 @@ def write_path_report(
     point : ControlPoint, optional
         Whose motion the load curve shows; by default the point that moved most in the end.
     language : {"en", "it"}
+    first : str
+        English HTML that stands before the stages, such as the movement of supports.
 
     Returns
     -------
@@ -52,12 +55,14 @@ def write_path_report(
         ``path``.
     """
     path = Path(path)
-    path.write_text(path_html(found, point=point, language=language), encoding="utf-8")
+    path.write_text(path_html(found, point=point, language=language, first=first), encoding="utf-8")
     return path
 
 
 @strict
-def path_html(found: PathResult, *, point: ControlPoint | None = None, language: Language = "en") -> str:
+def path_html(
+    found: PathResult, *, point: ControlPoint | None = None, language: Language = "en", first: str = ""
+) -> str:
     """Return the report of a load path as a text; see :func:`write_path_report`."""
     chosen = report_steps(found)
     curves = PathPlots(found).stages(point=most_moving(found) if point is None else point)
@@ -66,7 +71,7 @@ def path_html(found: PathResult, *, point: ControlPoint | None = None, language:
         [step_words(found, i, language) for i in chosen],
         verdict=verdict_html(found.verdict, found.verdict.proof, units=found.assembly.model.report),
         figures=figure_html(figure_in(curves[-1], language), "path", "Load against motion, stage by stage"),
-        more=_depends(found, language) + _stages(found) + _events(found),
+        more=first + _depends(found, language) + _stages(found) + _events(found),
         language=language,
     )
 

@@ -162,9 +162,9 @@ class Analyses:
     @property
     def assumed(self) -> tuple[str, ...]:
         """What of the model was not given."""
-        from concio.verdict.question import other_stages, thickness_words
+        from concio.verdict.question import assumed_words, other_stages
 
-        return (*thickness_words(self.model), *other_stages(self.model))
+        return (*assumed_words(self.model), *other_stages(self.model))
 
     @property
     def unseen(self) -> tuple[str, ...]:

@@ -70,9 +70,10 @@ def _downwards(model: Model) -> dict[int, _Down]:
 def _no_weight(model: Model, heavy: int) -> tuple[str, ...]:
     """Return what to say where no load of kind weight acts downwards."""
     sideways = any(load.kind == "weight" for load in model.loads)
-    if heavy and not sideways:
+    if heavy:
         words = f"{counted(heavy, 'block')} {'has' if heavy == 1 else 'have'} a unit weight"
-        return (f"self-weight does not act: {words}, and there is no load of kind weight",)
+        why = "loads of kind weight act sideways alone" if sideways else "there is no load of kind weight"
+        return (f"self-weight does not act{' downwards' * sideways}: {words}, and {why}",)
     acts = any(s.moves for s in model.supports) or any(t.prestress for t in model.ties)
     if not (acts or model.loads or model.temperatures):
         return ("nothing acts: there are no loads, no support is moved and no tie is prestressed",)

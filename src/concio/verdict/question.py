@@ -195,7 +195,7 @@ def question_of(
         else:
             factor = load_factor(factors, group)
             acting.append(replace(one, factor=factor, role="constant" if factor else "not applied"))
-    assumptions = (*thickness_words(assembly.model), *other_stages(assembly.model, stages))
+    assumptions = (*assumed_words(assembly.model), *other_stages(assembly.model, stages))
     return Question(asked, tuple(acting), assumptions)
 
 
@@ -243,6 +243,13 @@ def _movements(support: Support, amount: float, units: Units) -> list[str]:
     axes = "xyz" if len(turns) > 1 else "z"
     shifts += [("rotation", v, f"about {axis}") for v, axis in zip(turns, axes, strict=True)]
     return [f"{units.text(kind, amount * float(v), 4)} {way}" for kind, v, way in shifts if v]
+
+
+def assumed_words(model: Model) -> tuple[str, ...]:
+    """Return what a model leaves to a default: its thickness, and that no block has a weight where none has."""
+    free = [b for b in model.bodies if b.kind != "fixed"]
+    light = bool(free) and model.periods is None and not any(model.materials[b.material].unit_weight for b in free)
+    return (*thickness_words(model), *(("no block has a unit weight: there is no self-weight",) if light else ()))
 
 
 def thickness_words(model: Model) -> tuple[str, ...]:

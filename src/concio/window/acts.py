@@ -16,7 +16,7 @@ from concio.errors import ConcioError
 from concio.model.model import Model
 from concio.verdict.italian import in_italian
 from concio.verdict.path_verdict import stage_words
-from concio.verdict.question import Acting, acting_groups, movement_words, thickness_words
+from concio.verdict.question import Acting, acting_groups, assumed_words, movement_words
 from concio.window.read_models import read
 from concio.window.worker import Tell
 
@@ -72,7 +72,7 @@ def _lines(question: str, options: Mapping[str, Any], data: Mapping[str, Any], m
             f"all of it is {weight} at factor 1"
         )
     yield from _added(question, options, data, model)
-    yield from thickness_words(model)
+    yield from assumed_words(model)
 
 
 def _added(question: str, options: Mapping[str, Any], data: Mapping[str, Any], model: Model) -> Iterator[str]:

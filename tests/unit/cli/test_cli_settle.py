@@ -90,8 +90,20 @@ def test_its_text_tells_the_movement_and_the_reactions(squeezed: Path) -> None:
     code, out, _ = run("settle", squeezed)
     assert code == 0
     assert "movement     'left' moves by 0.1 mm along x (support 'moves in')" in out
-    assert "reactions    before the movement | at 1 of it" in out
+    assert "reactions    before the movement | at its end" in out
     assert "left         (0 kN along x, 0 kN along y) | (+25 kN along x, 0 kN along y)" in out
+
+
+def test_its_report_tells_them_too_in_both_languages(squeezed: Path, tmp_path: Path) -> None:
+    for language, words in (
+        ("en", ("Movement and reactions", "&#x27;left&#x27; moves by 0.25 mm along x", "+62.5 kN along x")),
+        ("it", ("Movimento e reazioni", "&#x27;left&#x27; si muove di 0,25 mm lungo x", "+62,5 kN lungo x")),
+    ):
+        place = tmp_path / language
+        assert run("settle", squeezed, "--amount", "2.5", "--out", place, "--language", language, "--quiet")[0] == 0
+        page = (place / "report.html").read_text(encoding="utf-8").replace("'", "&#x27;")
+        assert all(word in page for word in words)
+        assert "0 iterations, 0 s" not in page
 
 
 def test_movements_that_fall_end_before_their_whole(tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ import pytest
 
 import concio
 from concio import Body, JointLaw, Load, Model, Polyhedron, Rigid, Support, Tie
+from concio.cli.check_lines import check_lines
 from concio.contact.detection import detect
 from concio.verdict.attention import attention_of
 from concio.verdict.question import group_words
@@ -63,6 +64,10 @@ def lifted(by: float) -> Model:
 
 CASES: dict[str, tuple[Callable[[], Model], str]] = {
     "forgotten loads": (lambda: stack(loads=()), "self-weight does not act: 2 blocks have a unit weight"),
+    "weights sideways alone": (
+        lambda: stack(loads=(Load("weight", (0.1, 0), group="live"),)),
+        "self-weight does not act downwards: 2 blocks have a unit weight",
+    ),
     "nothing at all": (lambda: stack(loads=(), materials={"block": Rigid()}), "nothing acts: there are no loads"),
     "one material without weight": (light, "'b' has no unit weight, the other 1 have one"),
     "weight of some": (
@@ -109,6 +114,16 @@ def test_a_sound_model_has_nothing_odd() -> None:
     assert odd(stack()) == ()
     assert odd(tied()) == ()
     assert odd(with_load(kind="pressure", value=(10.0,), edge=((0, 2), (1, 2)), group="q")) == ()
+
+
+def test_that_no_block_has_a_weight_is_assumed_and_told() -> None:
+    pressed = (Load("pressure", (10.0,), edge=((0, 2), (1, 2))),)
+    for loads, material, told in ((pressed, Rigid(), True), (DOWN, Rigid(20.0), False)):
+        model = stack(loads=loads, materials={"block": material})
+        lines = check_lines(model, detect(model), {}, every=False)
+        assumed = (*concio.solve(model).verdict.question.assumptions, *(x for x in lines if x.startswith("assumed")))
+        assert sum("no block has a unit weight" in line for line in assumed) == 2 * told
+        assert sum("thickness 0.4 m" in line for line in assumed) == 2
 
 
 @pytest.mark.parametrize("name", CASES)

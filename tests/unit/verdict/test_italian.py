@@ -5,13 +5,16 @@ from __future__ import annotations
 import re
 import tomllib
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 import concio
+from concio.analysis.path import _finite_steps
 from concio.problem.solution import Status
+from concio.solvers.path.record import Event, Outcome
 from concio.verdict import dynamics_verdict, path_verdict, push_verdict
 from concio.verdict.italian import GAP, NUMBER, in_italian, italian
 from concio.verdict.step_words import WORDS
@@ -90,3 +93,14 @@ def test_sentences_of_the_window_have_decimal_commas_where_they_are_known() -> N
             seen += 1
             assert pieces[0][0] == GAP.sub("12,5 m", said).replace("'12,5 m'", "'12.5 m'")
     assert seen > 50
+
+
+@pytest.mark.parametrize("count", [1, 3])
+@pytest.mark.parametrize("kind", ["jumps", "restarts"])
+def test_notes_of_finite_steps_and_of_stages_that_ended_are_known(kind: str, count: int) -> None:
+    events = [Event(0.25, 0.0, 0, kind, 0, 1)] * count
+    exact = SimpleNamespace(events=events, jumps=[e for e in events if e.kind == "jumps"])
+    notes = _finite_steps(concio.Stage("wind", {"live": 1.0}), exact)  # type: ignore[arg-type]
+    notes += [f"stage 'wind' ended at 0.25 of its load. {end.value}" for end in Outcome]
+    assert len(notes) == 1 + len(Outcome)
+    assert [note for note in notes if {p.language for p in italian(note)} != {"it"}] == []
