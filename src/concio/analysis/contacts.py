@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from concio.contact.pairs import Pairs
+from concio.kinematics.frames import turned_left
 from concio.problem.pair_state import PairState, PairStates
 from concio.problem.tolerances import UNLOADED
 from concio.representation import short_repr
@@ -20,7 +21,7 @@ STATE_NAMES = tuple(state.name.lower() for state in PairState)
 @short_repr
 @dataclass(frozen=True, eq=False)
 class Contacts:
-    """State of every contact pair, m in all.
+    """State of every contact pair, m in all; ties are the pairs whose ``pairs.interface`` is -1.
 
     Parameters
     ----------
@@ -73,14 +74,19 @@ class Contacts:
         return self.pairs.point
 
     @property
+    def area(self) -> Array:
+        """Tributary area (m,) [m2]; zero of contacts at corners and along edges, nan of ties."""
+        return np.where(self.pairs.interface >= 0, self.pairs.area, np.nan)
+
+    @property
     def pressure(self) -> Array:
         """Contact pressure t_n over tributary area (m,), compression positive [kN/m2]; nan where there is no area."""
-        return _over(self.normal_force, self.pairs.area)
+        return _over(self.normal_force, self.area)
 
     @property
     def shear(self) -> Array:
         """Friction stress t_t over tributary area (m, d-1) [kN/m2]; nan where there is no area."""
-        return _over(self.friction_force, self.pairs.area[:, None])
+        return _over(self.friction_force, self.area[:, None])
 
     @property
     def force_on_b(self) -> Array:
@@ -118,9 +124,14 @@ class JointResultants:
     normal, tangent : (j, 2) arrays
     length : (j,) array
         [m].
+    area : (j,) array
+        Length times thickness [m2].
     N, V : (j,) arrays
         Normal force (compression positive) and shear force along t, signed [kN]. :attr:`shear_vector`,
         :attr:`shear_size`, :attr:`force` and :attr:`point` mean the same in :class:`.SpaceResultants`.
+    M : (j,) array
+        Moment about the middle of the joint, anticlockwise [kN m]. Where a joint pulls, it can have a moment without a
+        normal force.
     eccentricity : (j,) array
         Distance of the resultant from the middle along t [m]; nan where N is zero.
     open_share : (j,) array
@@ -144,8 +155,10 @@ class JointResultants:
     normal: Array
     tangent: Array
     length: Array
+    area: Array
     N: Array
     V: Array
+    M: Array
     eccentricity: Array
     open_share: Array
     slipping: Array
@@ -175,9 +188,17 @@ class JointResultants:
 
 
 
-def loaded(N: Array) -> Array:
-    """Return which joints carry a normal force, (j,) booleans."""
-    return np.asarray(np.abs(N) > UNLOADED * float(np.abs(N).max(initial=0.0)))
+def loaded(N: Array, size: Array) -> Array:
+    """Return which joints carry a normal force, (j,) booleans.
+
+    Parameters
+    ----------
+    N : (j,) array
+        Normal force of each joint [kN].
+    size : (j,) array
+        Sum of the sizes of the forces that N is the sum of: in bending N is the rounding of tension and compression.
+    """
+    return np.asarray(np.abs(N) > UNLOADED * float(size.max(initial=0.0)))
 
 
 def joint_resultants(contacts: Contacts) -> JointResultants:
@@ -208,8 +229,10 @@ def joint_resultants(contacts: Contacts) -> JointResultants:
     N, V = total(contacts.normal_force), total(contacts.friction_force[:, 0])
     arm = np.zeros(len(pairs))
     arm[inside] = along[inside] - centre[index]
-    moment = total(contacts.normal_force * arm)
-    carries = loaded(N)
+    pressed = total(contacts.normal_force * arm)
+    carries = loaded(N, total(np.abs(contacts.normal_force)))
+    turning = np.zeros(len(pairs))
+    turning[inside] = (turned_left(pairs.point[inside] - middle[index]) * contacts.force_on_b[inside]).sum(1)
     touching, slips = ~contacts.states.open, contacts.states.slips
     return JointResultants(
         body_a=pairs.body_a[first],
@@ -218,9 +241,11 @@ def joint_resultants(contacts: Contacts) -> JointResultants:
         normal=pairs.normal[first],
         tangent=tangent,
         length=length,
+        area=total(pairs.area),
         N=N,
         V=V,
-        eccentricity=np.where(carries, moment / np.where(carries, N, 1.0), np.nan),
+        M=total(turning),
+        eccentricity=np.where(carries, pressed / np.where(carries, N, 1.0), np.nan),
         open_share=total(weight * ~touching) / safe,
         slipping=(total((touching & ~slips).astype(float)) == 0) & (total(touching.astype(float)) > 0),
     )

@@ -107,7 +107,7 @@ def joint_resultants_in_space(contacts: Contacts, joints: Sequence[Joint]) -> Sp
     total = summed(force)
     moment = summed(cross(pairs.point[own] - middle[of], force))
     N = (total * normal).sum(1)
-    carries = loaded(N)
+    carries = loaded(N, summed(np.abs(contacts.normal_force[own])))
     safe = np.where(carries, N, 1.0)
     # the normal forces alone place the resultant in the plane of the joint
     pressed = summed(contacts.normal_force[own, None] * (pairs.point[own] - middle[of]))

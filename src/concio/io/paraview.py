@@ -97,7 +97,8 @@ def contacts_grid(result: Result) -> Grid:
     """Return the contact pairs as points with all their numbers.
 
     Point data: ``state`` (0 open, 1 stick, 2 slip, 3 crushed), ``normal_force`` and the vector ``force`` on side b
-    [kN], ``pressure`` [kN/m2], ``gap`` [m], ``normal``, ``area`` [m2], ``body_a``, ``body_b``, ``interface``.
+    [kN], ``pressure`` [kN/m2], ``gap`` [m], ``normal``, ``area`` [m2; nan of ties], ``body_a``, ``body_b``,
+    ``interface`` (-1 of ties).
     Of friction on side b [kN], shear stress [kN/m2] and slip [m] the vectors ``friction_vector``,
     ``shear_stress_vector``, ``slip_vector`` in the axes of the model, and the components along tangents:
     in the plane ``friction_force``, ``shear``, ``slip`` along ``tangent``; in space
@@ -107,7 +108,8 @@ def contacts_grid(result: Result) -> Grid:
     pairs = result.assembly.pairs
     m = len(pairs)
     data: dict[str, Array] = {
-        "normal": pairs.normal, "area": pairs.area, "interface": pairs.interface.astype(np.int32),
+        "normal": pairs.normal, "area": np.where(pairs.interface >= 0, pairs.area, np.nan),
+        "interface": pairs.interface.astype(np.int32),
         "body_a": pairs.body_a.astype(np.int32), "body_b": pairs.body_b.astype(np.int32),
     }  # fmt: skip
     tails = [""] if pairs.tangents.shape[1] == 1 else ["_1", "_2"]

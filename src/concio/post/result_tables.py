@@ -29,7 +29,7 @@ UNITS: dict[str, str] = {
     "area": "m2",
     **dict.fromkeys(("z", "u_z"), "m"),
     **dict.fromkeys(("force_z", "shear_x", "shear_y", "shear_z"), "kN"),
-    **dict.fromkeys(("moment_x", "moment_y", "moment_z", "torsion"), "kN m"),
+    **dict.fromkeys(("moment_x", "moment_y", "moment_z", "moment", "torsion"), "kN m"),
     **dict.fromkeys(("s_z", "t_yz", "t_zx", "s_3"), "kN/m2"),
     **dict.fromkeys(("rotation_x", "rotation_y", "rotation_z"), "rad"),
     "n_z": "-",
@@ -56,7 +56,7 @@ KINDS: dict[str, str] = {
     **dict.fromkeys(("rotation_x", "rotation_y", "rotation_z"), "rotation"),
     "n_z": "number",
     **dict.fromkeys(("at_x", "at_y", "at_z"), "length"),
-    **dict.fromkeys(("moment_x", "moment_y", "moment_z", "torsion"), "moment"),
+    **dict.fromkeys(("moment_x", "moment_y", "moment_z", "moment", "torsion"), "moment"),
     **dict.fromkeys((f"t{i}_{axis}" for i in ("", 1, 2) for axis in "xyz"), "number"),
 }
 KINDS |= {f"{name}_{i}": KINDS[name] for name in ("friction_force", "shear", "slip") for i in (1, 2)}
@@ -95,6 +95,7 @@ class Tables:
             "kind": np.array([b.kind for b in model.bodies]),
             "role": np.array([b.role for b in model.bodies]),
             **vectors("", self.result.assembly.disc.centroids),
+            "volume": np.array([b.volume for b in model.bodies]),
             **vectors("u_", motion[:, :2]),
             "rotation": motion[:, 2],
             "s_x": stress.mean[:, 0],
@@ -111,7 +112,10 @@ class Tables:
         Columns of the plane and of space that have one name mean the same: ``shear_x`` and so on are the components of
         the shear force, ``shear_size`` its size, ``at_x`` and so on where the resultant meets the joint. In the plane
         ``shear_force`` is the component along the tangent ``t_x, t_y``, with its sign, and ``eccentricity`` the
-        distance of ``at`` from the middle along it.
+        distance of ``at`` from the middle along it; ``moment`` is the moment about the middle, anticlockwise. In
+        space ``moment_x`` and so on are its components, ``torsion`` its part along the normal. The resultant at the
+        middle and the moment make up the joint; the resultant at ``at`` alone where there is neither torsion nor
+        tension.
         """
         j = self.result.joints
         return {
@@ -120,10 +124,12 @@ class Tables:
             **vectors("n_", j.normal),
             **vectors("t_", j.tangent),
             "length": j.length,
+            "area": j.area,
             "normal_force": j.N,
             "shear_force": j.V,
             **self.acting(j),
             "eccentricity": j.eccentricity,
+            "moment": j.M,
             "open_share": j.open_share,
             "slipping": j.slipping,
         }
@@ -133,6 +139,8 @@ class Tables:
 
         Friction, shear stress and slip are components along tangents: along ``t_x, t_y`` in the plane; in space those
         that end in ``_1`` along ``t1_x, t1_y, t1_z``, those that end in ``_2`` along ``t2_x, t2_y, t2_z``.
+        Ties are rows with the law "tie" and the interface -1, at the middle of the bar. Their ``normal_force`` is the
+        tension, which acts on the second end along the normal; they have no area and no pressure.
         """
         c = self.result.contacts
         p = c.pairs
@@ -144,7 +152,7 @@ class Tables:
             **vectors("", p.point),
             **vectors("n_", p.normal),
             **frames(p.tangents),
-            "area": p.area,
+            "area": c.area,
             "state": np.where(p.interface >= 0, np.array(STATE_NAMES)[c.state], self._tie_states()),
             "normal_force": c.normal_force,
             **components("friction_force", c.friction_force),

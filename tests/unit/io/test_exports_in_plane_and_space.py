@@ -79,7 +79,7 @@ def close(a: Array, b: Array, scale: float | None = None) -> bool:
 
 
 FRAMES = ("t_", "t1_", "t2_")
-ALONG = ("shear_force", "eccentricity", "friction_force", "shear", "slip", "angle", "t_xy")
+ALONG = ("shear_force", "eccentricity", "friction_force", "shear", "slip", "angle", "t_xy", "moment")
 """Components along tangents and axes: they follow their frame, not the structure."""
 
 
@@ -160,6 +160,7 @@ def test_components_along_the_told_tangents_make_up_the_vectors(seed: int, dim: 
         assert close(of_joint["shear_"], joints["shear_force"][:, None] * of_joint["t_"])
         assert close(arm, joints["eccentricity"][:, None] * of_joint["t_"])
         assert close(arm[:, 0] * force[:, 1] - arm[:, 1] * force[:, 0], moment[:, 0])
+        assert close(joints["moment"], moment[:, 0])
     else:
         assert close(of_joint["moment_"], moment)
         pressing = np.cross(arm, joints["normal_force"][:, None] * of_joint["n_"])
@@ -177,6 +178,8 @@ def test_a_plane_structure_of_a_thickness_is_its_extrusion(seed: int) -> None:
                  ("open_share", "open_share")):  # fmt: skip
         assert close(s[b], p[a], float(np.abs(p["normal_force"]).max()) if "force" in a or "shear" in a else None), a
     assert close(p["length"] * THICKNESS, s["area"])
+    assert close(p["area"], s["area"])
+    assert close(p["moment"], -s["moment_y"])
     assert close(s["area"], THICKNESS * unit["area"])
     assert close(s["moment_y"], p["normal_force"] * p["eccentricity"])  # the plane seen from -y, tangents turned left
     segments = plane.assembly.detection.segments
