@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -160,18 +161,20 @@ def assess_lines(found: Assessment, tie: TieForce | None = None) -> list[str]:
         lines.append(f"  also followed        {len(found.others)} more in parts of the structure, zeta_E from {least}")
     lines.append(f"  in short             {verdict.headline}")
     if tie is not None:
-        if tie.force == 0:
-            lines.append(f"  tie '{tie.tie}'          not needed: zeta_E is {number(tie.reached, 4)} without it")
-        elif tie.force == float("inf"):
-            largest = number(tie.largest, 4)
-            lines.append(
-                f"  tie '{tie.tie}'          no force up to {largest} kN does: zeta_E {number(tie.reached, 4)}"
-            )
-        else:
-            lines.append(
-                f"  tie '{tie.tie}'          {number(tie.force, 4)} kN bring zeta_E to {number(tie.reached, 4)}"
-            )
+        lines.append(f"  tie '{tie.tie}'          {_tie_words(tie)}")
     return lines
+
+
+def _tie_words(tie: TieForce) -> str:
+    from concio.display import number
+
+    reached = f"zeta_E {number(tie.reached, 4)}"
+    if tie.force == 0:
+        return f"not needed: without it {reached}"
+    if math.isfinite(tie.force):
+        return f"{number(tie.force, 4)} kN bring zeta_E to {number(tie.reached, 4)}"
+    least = min(tie.assessment.mechanisms, key=lambda m: m.least)
+    return f"no force up to {number(tie.largest, 4)} kN is enough: {reached}, of '{least.name}', push {least.direction}"
 
 
 def mechanism_lines(m: LocalMechanism) -> list[str]:

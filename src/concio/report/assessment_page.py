@@ -154,8 +154,9 @@ class AssessmentReport(Texts):
     def top(self) -> str:
         """Return the verdict: what pushes, what was found, what proves it, what limits it and what is open."""
         told, w = self.told, self.words
-        facts = [("asked", (told.question.asked,)), ("acts", self.acting()), ("limits", told.limits),
-                 ("not_checked", told.unchecked), ("attention", told.attention)]  # fmt: skip
+        assumed = tuple(map(plain_italian if self.language == "it" else str, told.question.assumptions))
+        facts = [("asked", (told.question.asked,)), ("acts", self.acting()), ("assumed", assumed),
+                 ("limits", told.limits), ("not_checked", told.unchecked), ("attention", told.attention)]  # fmt: skip
         rows = "".join(f"<tr><th>{escape(w[key])}</th><td>{'<br>'.join(escape(v) for v in lines)}</td></tr>"
                        for key, lines in facts if lines)  # fmt: skip
         return (

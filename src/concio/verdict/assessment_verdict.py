@@ -293,7 +293,7 @@ class _Words:
             limits.append(self.strips())
         excused = found.arguments.get("elsewhere", ())
         if excused:
-            limits.append(self.say("elsewhere", items=", ".join(excused)))
+            limits.append(self.say("elsewhere", items=", ".join(self.say(f"elsewhere_{item}") for item in excused)))
         return tuple(limits)
 
     def slides_alike(self, worst: LocalMechanism) -> bool:

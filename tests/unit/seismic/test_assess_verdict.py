@@ -19,6 +19,7 @@ from commands import run
 from concio import Assessment, JointLaw, Load, Model, Polyhedron, Rigid, Tie
 from concio.analysis.seismic.tie_history import TieHistory, together
 from concio.analysis.seismic.variations import tie_force
+from concio.cli.assess_command import assess_lines
 from concio.contact.applied import sideways
 from concio.display import number
 from concio.errors import InputError, NoEquilibriumError
@@ -254,6 +255,8 @@ def test_no_yield_force_helps_a_tie_that_breaks_first() -> None:
     found = tie_force(plain(*strip(), ties=(rod(longest=4e-4),)), "rod", site=site(), **ONE)
     assert math.isinf(found.force)
     assert found.reached < 1
+    said = assess_lines(found.assessment, found)[-1]
+    assert said.endswith(f"zeta_E {number(found.reached, 4)}, of 'weakest of all', push left")
 
 
 # -- what was not checked ---------------------------------------------------------------------------------------------
@@ -279,7 +282,10 @@ def test_a_parapet_is_not_verified_on_the_ground() -> None:
     assert high.zeta < 1
     answered = assessed(parapet(), site=site(hazard=QUIET), elsewhere=["height"])
     assert answered.verdict.outcome is Outcome.HOLDS
-    assert "answers for it" in " ".join(answered.verdict.limits)
+    assert "answers for it: amplification at height" in " ".join(answered.verdict.limits)
+    page = AssessmentReport(answered, language="it").html()
+    assert "che ne risponde: l&#x27;amplificazione in quota" in page.replace("'", "&#x27;")
+    assert "<th>assunto</th><td>spessore 1 m, valore predefinito" in page
     with pytest.raises(InputError, match="no check that is made elsewhere 'heights'"):
         assessed(parapet(), elsewhere=["heights"])
 
