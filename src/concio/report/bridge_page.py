@@ -123,7 +123,7 @@ class BridgeReport:
         facts: list[tuple[str, Sequence[str]]] = [
             ("asked", (told.question.asked,)),
             ("acts", [self.said.acting(v) for v in told.question.loads(self.units)]),
-            ("limits", told.limits), ("not_checked", told.unchecked),
+            ("limits", [self.told(line) for line in told.limits]), ("not_checked", told.unchecked),
             ("attention", [self.told(line) for line in told.attention]),
         ]  # fmt: skip
         rows = "".join(f"<tr><th>{escape(w[key])}</th><td>{'<br>'.join(escape(v) for v in lines)}</td></tr>"

@@ -107,7 +107,8 @@ def bridge_lines(found: BridgeResult) -> list[str]:
     bare = replace(vehicle, dynamic=1.0, factor=1.0)
     if not math.isnan(found.design):
         axle, _ = heaviest_words(bare, found.design / found.required, Words("en", units))
-        lines.append(f"  permissible  {axle} for the load factor {number(found.required, 4)}")
+        without = ", without dynamic and partial factors" if vehicle.dynamic * vehicle.factor != 1.0 else ""
+        lines.append(f"  permissible  {axle} for the load factor {number(found.required, 4)}{without}")
     for b in found.brackets:
         s = b.standing
         lines.append(

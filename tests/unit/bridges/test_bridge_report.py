@@ -88,6 +88,25 @@ def test_the_report_holds_the_verdict_and_every_section(language: str, page_in: 
     assert ("dovuto alla spinta del terreno" in text) == (language == "it")
 
 
+def test_what_limits_an_answer_is_in_the_language_of_the_report() -> None:
+    law = concio.JointLaw(0.6, compressive_strength=5000.0)
+    crushes = concio.assess_bridge(small(friction=law), step=1.5, fine=0.5, worst=1, checked=0, sensitivity=False)
+    for language, words in (("en", "joints of rigid blocks that crush"), ("it", "i giunti di conci rigidi che si")):
+        top = BridgeReport(crushes, language).top()  # type: ignore[arg-type]
+        assert words in top
+        assert ("joints of rigid blocks" in top) == (language == "en")
+
+
+def test_what_a_permissible_axle_includes_is_said(found: concio.BridgeResult) -> None:
+    factored = replace(found, model=replace(found.model, vehicle=replace(found.vehicle, dynamic=1.5)))
+    for shown, whether in ((found, False), (factored, True)):
+        line = next(line for line in bridge_lines(shown) if line.startswith("  permissible"))
+        assert ("without dynamic and partial factors" in line) == whether
+    summary = BridgeReport(factored, "it").summary()
+    assert "con coefficienti dinamico e parziale" in summary
+    assert "senza coefficienti dinamico e parziale" in summary
+
+
 @pytest.mark.long  # its figures are drawn
 def test_the_report_tells_every_datum_that_was_given_and_has_no_english_in_italian(
     found: concio.BridgeResult, page_in: Callable[[str], str]
