@@ -15,6 +15,8 @@ from concio.analysis.motion import push as push_module
 from concio.analysis.motion import push_apart
 from concio.analysis.motion.fate import tilted
 from concio.errors import NoEquilibriumError, SolverError
+from concio.model.motion.records import attention
+from concio.verdict.italian import italian
 from concio.verdict.not_standing import FOLLOWED_AWAY
 from concio.verdict.verdict import Outcome
 from models import box, model_of, weight
@@ -186,6 +188,17 @@ def test_the_scale_of_the_file_is_not_that_of_a_pulse_given_beside_it(tmp_path):
 def test_a_pulse_above_any_earthquake_asks_for_attention():
     found = concio.dynamics(standing(), concio.Pulse("sine", 60.0, 0.02), 0.02, 2e-3, gravity=G)
     assert any("more than any earthquake" in line for line in found.verdict.attention)
+
+
+@pytest.mark.parametrize(("factor", "told"), [(1 / 981, "less than any damaging"), (1.0, ""), (981, "more than any")])
+def test_a_record_read_in_another_unit_asks_for_attention(factor, told):
+    """Values in g that are read as cm/s2, as they are, and values in cm/s2 that are read as g."""
+    time = np.arange(0.0, 0.2, 0.01)
+    record = concio.Record(0.3 * factor * G * np.sin(30.0 * time), 0.01, name="x.txt")
+    odd = attention(record)
+    assert (told in odd) if told else odd is None
+    if odd:
+        assert [piece.language for piece in italian(odd)] == ["it"]
 
 
 def test_a_motion_says_which_loads_have_no_mass():

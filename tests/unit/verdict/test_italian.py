@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 import concio
 from concio.analysis.path import _finite_steps
 from concio.problem.solution import Status
+from concio.report.italian_page import told_pieces
 from concio.solvers.path.record import Event, Outcome
 from concio.verdict import dynamics_verdict, path_verdict, push_verdict
 from concio.verdict.italian import GAP, NUMBER, in_italian, italian
@@ -76,6 +77,24 @@ def test_verdicts_that_were_reached_are_said_in_italian_with_their_numbers() -> 
     assert f"{found.design:.6g} volte 'live'" in said[0].text
     step = italian(concio.solve(pillar, on_failure="return").verdict.sentence)
     assert step[0].text == TABLE["sentences"][Status.NO_EQUILIBRIUM.value]
+
+
+FALLS = (
+    "'r3' has sunk by 0.413 m below where it stood",
+    "'a b' has turned by 60.3 degrees; 'r3' has turned by 60.2 degrees",
+    "'r3' has sunk by 0.413 m below where it stood, and 3 more", "'a' has fallen by 3 m, below everything in the model",
+    "'a' leans beyond its own equilibrium, at 12 degrees, and goes on",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("what", FALLS)
+def test_how_blocks_fall_is_said_in_one_language(what: str) -> None:
+    (said,) = italian(f"At 4.578 s it has fallen: {what}.")
+    assert said.language == "it"
+    assert said.text.startswith("A 4.578 s è caduta: '")
+    assert not re.search(r"\b(has|by|and|the|it|more)\b", said.text)
+    pieces = told_pieces(f"At 4.578 s it has fallen: {what}. Nobody knows this sentence.")
+    assert pieces[0][0].startswith("A 4,578 s è caduta: '")
 
 
 def test_a_sentence_is_not_translated_where_a_gap_would_reach_over_its_end() -> None:

@@ -35,6 +35,9 @@ PEER: dict[str, str] = {".at2": "g", ".vt2": "cm/s", ".dt2": "cm"}
 LARGEST = 5.0
 """Peak acceleration in g from which on a record is probably in another unit."""
 
+SMALLEST = 2e-3
+"""Peak acceleration in g up to which a record is probably in another unit, such as g read as cm/s2."""
+
 BEGINS = 0.05
 """Share of its peak above which a record of velocities does not begin at rest."""
 
@@ -164,6 +167,9 @@ def attention(signal: Record | Pulse) -> str | None:
     if record.quantity != "acceleration":
         return None
     peak = float(np.abs(record.values).max()) / STANDARD_GRAVITY
+    if 0 < peak < SMALLEST:
+        told = "less than any damaging earthquake: is that its unit?"
+        return f"record '{record.name}' has a peak of {peak:.3g} g, {told}"
     if peak <= LARGEST:
         return None
     return (
