@@ -10,6 +10,7 @@ from concio.contact.pairs import Pairs
 from concio.kinematics.frames import turned_left
 from concio.problem.pair_state import PairState, PairStates
 from concio.problem.tolerances import UNLOADED
+from concio.read_only import read_only
 from concio.representation import short_repr
 
 Array = np.ndarray
@@ -20,6 +21,7 @@ STATE_NAMES = tuple(state.name.lower() for state in PairState)
 
 @short_repr
 @dataclass(frozen=True, eq=False)
+@read_only
 class Contacts:
     """State of every contact pair, m in all; ties are the pairs whose ``pairs.interface`` is -1.
 
@@ -113,6 +115,7 @@ def _over(force: Array, area: Array) -> Array:
 
 @short_repr
 @dataclass(frozen=True, eq=False)
+@read_only
 class JointResultants:
     """Resultants of each interface, on side b, about the middle of the interface; j interfaces.
 

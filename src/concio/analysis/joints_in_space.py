@@ -13,6 +13,7 @@ from concio.model.interfaces.detect import Interface
 from concio.model.interfaces.patch import Patch
 from concio.model.interfaces.point_contact import PointContact
 from concio.problem.pair_state import PairState
+from concio.read_only import read_only
 from concio.representation import short_repr
 
 Array = np.ndarray
@@ -21,6 +22,7 @@ Joint = Interface | Patch | PointContact
 
 @short_repr
 @dataclass(frozen=True, eq=False)
+@read_only
 class SpaceResultants:
     """Resultants of each interface in space, on side b; j interfaces.
 

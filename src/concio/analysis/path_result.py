@@ -19,6 +19,7 @@ from concio.model.stages import ControlPoint, Stage
 from concio.problem.certificate import Certificate
 from concio.problem.solution import Status, judge
 from concio.problem.tolerances import CERTIFIED
+from concio.read_only import read_only
 from concio.representation import short_repr
 from concio.solvers.path.path_state import LinearPath, PathState, path_kinematics, weakened
 from concio.solvers.path.record import Event, Outcome
@@ -102,6 +103,7 @@ class NamedEvent:
 
 
 @dataclass(frozen=True, eq=False)
+@read_only
 class PathResult(Shown):
     """A load path with every step and every event.
 

@@ -26,6 +26,7 @@ from concio.kinematics.rigid import rigid_operator, swept
 from concio.model.model import Model
 from concio.problem.certificate import Certificate
 from concio.problem.solution import Mechanism, Solution, Status, pair_states
+from concio.read_only import locked
 from concio.solvers.statics.self_stress import SelfStress
 from concio.solvers.statics.sufficient import SufficientCondition, sufficient_condition
 from concio.verdict.step_verdict import result_lines, self_stress, step_verdict
@@ -116,15 +117,14 @@ class Result(Shown):
         Node by node in the order of the axes; of a rigid body the displacement of its centroid and its rotation times
         its reach (:mod:`concio.kinematics.rigid`).
         """
-        return self.assembly.displacement(self.solution.displacement, self.factors)
+        return locked(self.assembly.displacement(self.solution.displacement, self.factors))
 
     @cached_property
     def mechanism_velocity(self) -> Array | None:
         """Velocity of the mechanism on all unknowns (N_all,), largest entry 1; None where there is none."""
         if self.mechanism is None:
             return None
-        velocity: Array = self.assembly.supported.T @ self.mechanism.velocity
-        return velocity
+        return locked(self.assembly.supported.T @ self.mechanism.velocity)
 
     @cached_property
     def contacts(self) -> Contacts:

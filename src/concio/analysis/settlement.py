@@ -15,6 +15,7 @@ from concio.contact.assembly import Assembly, as_assembly
 from concio.errors import InputError
 from concio.model.model import Model
 from concio.problem.solution import ProgressCallback
+from concio.read_only import read_only
 from concio.representation import short_repr
 from concio.verdict.question import movement_words
 from concio.verdict.verdict import Verdict
@@ -25,6 +26,7 @@ Array = np.ndarray
 
 @short_repr
 @dataclass(frozen=True, eq=False)
+@read_only
 class SettlementResult(Shown):
     """Movement of supports after the dead load.
 

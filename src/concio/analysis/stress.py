@@ -10,6 +10,7 @@ import numpy as np
 from concio.errors import InputError
 from concio.fem.constitutive import principal, principal_in_space
 from concio.fem.discretisation import Discretisation
+from concio.read_only import locked, read_only
 from concio.representation import short_repr
 
 Array = np.ndarray
@@ -17,6 +18,7 @@ Array = np.ndarray
 
 @short_repr
 @dataclass(frozen=True, eq=False)
+@read_only
 class Stress:
     """Stresses that follow from the displacements; rigid and fixed bodies have none (nan).
 
@@ -69,7 +71,7 @@ class Stress:
             bodies = np.flatnonzero(self.disc.shape_of == s)
             u = self.displacement[self.disc.offsets[bodies][:, None] + np.arange(shape.unknowns)]
             found[bodies] = u @ shape.mean_stress_operator.T
-        return found
+        return locked(found)
 
     @cached_property
     def principal(self) -> tuple[Array, Array, Array]:
@@ -80,7 +82,8 @@ class Stress:
         if self.mean.shape[1] != 3:
             msg = "stresses in space have three principal values"
             raise InputError(msg, hint="they are in stress.principal_in_space")
-        return principal(self.mean)
+        s1, s2, angle = principal(self.mean)
+        return locked(s1), locked(s2), locked(angle)
 
     @cached_property
     def principal_in_space(self) -> tuple[Array, Array]:
@@ -88,4 +91,5 @@ class Stress:
         if self.mean.shape[1] != 6:
             msg = "the stresses of a plane model have no directions in space"
             raise InputError(msg, hint="they are in stress.principal")
-        return principal_in_space(self.mean)
+        values, directions = principal_in_space(self.mean)
+        return locked(values), locked(directions)

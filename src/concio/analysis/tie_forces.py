@@ -10,6 +10,7 @@ import numpy as np
 from concio.contact.assembly import Assembly
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.tolerances import BROKEN_TIE, SLACK_TIE
+from concio.read_only import read_only
 from concio.representation import short_repr
 
 Array = np.ndarray
@@ -17,6 +18,7 @@ Array = np.ndarray
 
 @short_repr
 @dataclass(frozen=True, eq=False)
+@read_only
 class TieForces:
     """Ties of one state of a model, k in all, in its order.
 

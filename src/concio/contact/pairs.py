@@ -23,6 +23,7 @@ from concio.kinematics.frames import frames
 from concio.model.interfaces.detect import Interface
 from concio.model.model import Model
 from concio.problem.contact_problem import Laws
+from concio.read_only import read_only
 from concio.representation import short_repr
 
 Array = np.ndarray
@@ -38,6 +39,7 @@ that touch without a common face."""
 
 @short_repr
 @dataclass(frozen=True, eq=False)
+@read_only
 class Pairs:
     """The contact pairs of a model, m in all.
 

@@ -66,7 +66,7 @@ KINDS |= {f"{name}_{i}": KINDS[name] for name in ("friction_force", "shear", "sl
 @short_repr
 @dataclass(frozen=True, eq=False)
 class Tables:
-    """Tables of one result. Each is a dict of arrays of one length.
+    """Tables of one result. Each is a dict of arrays of one length, which are copies: they can be changed.
 
     Parameters
     ----------
@@ -90,7 +90,7 @@ class Tables:
         model, stress = self.result.model, self.result.stress
         s1, s2, angle = stress.principal
         motion = body_motions(self.result)
-        return {
+        return owned({
             "body": np.array([b.name for b in model.bodies]),
             "kind": np.array([b.kind for b in model.bodies]),
             "role": np.array([b.role for b in model.bodies]),
@@ -104,7 +104,7 @@ class Tables:
             "s_1": s1,
             "s_2": s2,
             "angle": angle,
-        }
+        })  # fmt: skip
 
     def joints(self) -> Table:
         """Return one row an interface: its bodies, resultants on side b, where they act, what is open or slips.
@@ -114,11 +114,11 @@ class Tables:
         ``shear_force`` is the component along the tangent ``t_x, t_y``, with its sign, and ``eccentricity`` the
         distance of ``at`` from the middle along it; ``moment`` is the moment about the middle, anticlockwise. In
         space ``moment_x`` and so on are its components, ``torsion`` its part along the normal. The resultant at the
-        middle and the moment make up the joint; the resultant at ``at`` alone where there is neither torsion nor
-        tension.
+        middle and the moment are all that the joint transmits. So are, where there is an ``at``, the resultant there in
+        the plane; in space the normal force there, with the shear force at the middle and the torsion.
         """
         j = self.result.joints
-        return {
+        return owned({
             **self.names(j.body_a, j.body_b),
             **vectors("", j.middle),
             **vectors("n_", j.normal),
@@ -132,7 +132,7 @@ class Tables:
             "moment": j.M,
             "open_share": j.open_share,
             "slipping": j.slipping,
-        }
+        })  # fmt: skip
 
     def contacts(self) -> Table:
         """Return one row a contact pair: place, frame, law, state, forces, tractions, gap and slip.
@@ -145,7 +145,7 @@ class Tables:
         c = self.result.contacts
         p = c.pairs
         laws = np.array([*p.law_names, "tie"])
-        return {
+        return owned({
             **self.names(p.body_a, p.body_b),
             "interface": p.interface,
             "law": laws[p.law],
@@ -160,18 +160,18 @@ class Tables:
             **components("shear", c.shear),
             "gap": c.gap,
             **components("slip", c.slip),
-        }
+        })  # fmt: skip
 
     def reactions(self) -> Table:
         """Return one row a fixed body or support: its force on the structure."""
         found = self.result.reactions
         force = np.array(list(found.values()), dtype=float).reshape(-1, self.result.model.dim)
-        return {"support": np.array(list(found), dtype=str), **vectors("force_", force)}
+        return owned({"support": np.array(list(found), dtype=str), **vectors("force_", force)})
 
     def ties(self) -> Table:
         """Return one row a tie: its blocks, tension, elongation, state, and its force on the first block."""
         found = self.result.ties
-        return {
+        return owned({
             "tie": np.array(found.names, dtype=str),
             "body_a": np.array([a for a, _ in found.bodies], dtype=str),
             "body_b": np.array([b for _, b in found.bodies], dtype=str),
@@ -179,7 +179,7 @@ class Tables:
             "elongation": found.elongation,
             "state": np.array(found.state, dtype=str),
             **vectors("force_", found.pull),
-        }
+        })  # fmt: skip
 
     def _tie_states(self) -> Array:
         """Return the state of the tie that each pair (m,) stands for; empty of joints."""
@@ -206,6 +206,11 @@ class Tables:
         """Return the columns with the names of the bodies ``a`` and ``b`` (n,)."""
         names = np.array([*(body.name for body in self.result.model.bodies), ""])  # -1: the free end of a tie
         return {"body_a": names[a], "body_b": names[b]}
+
+
+def owned(table: Table) -> Table:
+    """Return a table of copies, which can be written to and changes nothing of the result."""
+    return {name: np.array(values) for name, values in table.items()}
 
 
 def components(name: str, values: Array) -> Table:

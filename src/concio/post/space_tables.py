@@ -7,7 +7,7 @@ import warnings
 import numpy as np
 
 from concio.post.body_motion import body_motions
-from concio.post.result_tables import Array, Table, Tables, vectors
+from concio.post.result_tables import Array, Table, Tables, owned, vectors
 
 
 class SpaceTables(Tables):
@@ -19,7 +19,7 @@ class SpaceTables(Tables):
         model, stress = result.model, result.stress
         motion = body_motions(result)
         values, _ = stress.principal_in_space
-        return {
+        return owned({
             "body": np.array([b.name for b in model.bodies]),
             "kind": np.array([b.kind for b in model.bodies]),
             "role": np.array([b.role for b in model.bodies]),
@@ -29,7 +29,7 @@ class SpaceTables(Tables):
             **vectors("rotation_", motion[:, 3:]),
             **dict(zip(("s_x", "s_y", "s_z", "t_xy", "t_yz", "t_zx"), stress.mean.T, strict=True)),
             **{f"s_{k + 1}": values[:, k] for k in range(3)},
-        }
+        })  # fmt: skip
 
     def joints(self) -> Table:
         """Return one row an interface: its bodies, resultants on side b, what is open or slips.
@@ -38,7 +38,7 @@ class SpaceTables(Tables):
         sign: ``shear_force``, which was its size, is deprecated and not among the columns; it is ``shear_size``.
         """
         j = self.result.joints_in_space
-        return _Joints({
+        return _Joints(owned({
             **self.names(j.body_a, j.body_b),
             **vectors("", j.middle),
             **vectors("n_", j.normal),
@@ -49,7 +49,7 @@ class SpaceTables(Tables):
             "torsion": j.torsion,
             "open_share": j.open_share,
             "slipping": j.slipping,
-        })  # fmt: skip
+        }))  # fmt: skip
 
 
 class _Joints(dict[str, Array]):

@@ -28,6 +28,7 @@ from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.error_units import in_units, measure, rounding
 from concio.problem.products import largest_of_columns, product, product_of_sizes, transposed_product
 from concio.problem.tolerances import BALANCE_ROUNDING, CERTIFIED, GRANTED
+from concio.read_only import read_only
 from concio.representation import short_repr
 
 
@@ -75,6 +76,7 @@ class Certificate:
 
 @short_repr
 @dataclass(frozen=True, eq=False)
+@read_only
 class Kinematics:
     """Gap, slip and crushing that follow from displacements and forces.
 

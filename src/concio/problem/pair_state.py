@@ -14,6 +14,7 @@ from enum import IntEnum
 
 import numpy as np
 
+from concio.read_only import read_only
 from concio.representation import short_repr
 
 Array = np.ndarray
@@ -38,6 +39,7 @@ class Normal(IntEnum):
 
 @short_repr
 @dataclass(frozen=True, eq=False)
+@read_only
 class PairStates:
     """States of ``m`` pairs.
 

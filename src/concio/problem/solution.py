@@ -16,6 +16,7 @@ from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.error_units import measure
 from concio.problem.pair_state import Normal, PairStates
 from concio.problem.tolerances import AT_BOUND, CERTIFIED
+from concio.read_only import read_only
 from concio.representation import short_repr
 
 
@@ -64,6 +65,7 @@ ProgressCallback = Callable[[Progress], "bool | None"]
 
 @short_repr
 @dataclass(frozen=True, eq=False)
+@read_only
 class Mechanism:
     """A rigid motion that proves there is no equilibrium (theory page, section 6), or the direction of a departure.
 
@@ -85,6 +87,7 @@ class Mechanism:
 
 @short_repr
 @dataclass(frozen=True, eq=False)
+@read_only
 class Departure:
     """A motion that starts from rest and never ends: constant acceleration and constant forces that obey every law.
 
@@ -144,6 +147,7 @@ class PartOutcome:
 
 @short_repr
 @dataclass(frozen=True, eq=False)
+@read_only
 class Solution:
     """Answer of a solver for one load step.
 

@@ -22,6 +22,7 @@ from concio.kinematics.spins import rotation_vector, turned_by
 from concio.model.model import Model
 from concio.model.stages import ControlPoint
 from concio.problem.tolerances import CERTIFIED
+from concio.read_only import read_only
 from concio.verdict.dynamics_verdict import dynamics_verdict
 from concio.verdict.verdict import Verdict
 from concio.views import Shown
@@ -41,6 +42,7 @@ class Ending(Enum):
 
 
 @dataclass(frozen=True, eq=False)
+@read_only
 class DynamicsResult(Shown):
     """A motion.
 

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from concio.read_only import read_only
+
 Array = np.ndarray
 
 NAMES = ("kinetic", "strain", "potential", "friction", "impact", "damping", "crushing", "input", "overlap", "drift")
@@ -17,6 +19,7 @@ hard joints that give way where nothing is hit."""
 
 
 @dataclass(frozen=True, eq=False)
+@read_only
 class EnergyBalance:
     """Energies at stored times [kN m].
 

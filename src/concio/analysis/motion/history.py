@@ -10,11 +10,13 @@ from concio.analysis.motion.energy import NAMES, EnergyBalance
 from concio.analysis.motion.state import MotionState
 from concio.contact.reference import Reference
 from concio.problem.tolerances import ENERGY_ROUNDING
+from concio.read_only import read_only
 
 Array = np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
+@read_only
 class Shots:
     """Placements at n times.
 
@@ -44,6 +46,7 @@ class Shots:
 
 
 @dataclass(frozen=True, eq=False)
+@read_only
 class Steps:
     """What is kept of every step, k of them.
 

@@ -21,6 +21,7 @@ from concio.kinematics.spins import rotation_vector, turned_from
 from concio.model.model import Model
 from concio.model.stages import ControlPoint
 from concio.problem.tolerances import CERTIFIED
+from concio.read_only import read_only
 from concio.verdict.push_verdict import push_verdict
 from concio.verdict.verdict import Verdict
 from concio.views import Shown
@@ -40,6 +41,7 @@ class PushEnding(Enum):
 
 
 @dataclass(frozen=True, eq=False)
+@read_only
 class PushResult(Shown):
     """A capacity curve of n points.
 

@@ -14,6 +14,8 @@ from concio.problem.pair_state import Normal, PairStates
 
 Array = np.ndarray
 
+NO_TIES = np.zeros(0, dtype=np.int8)
+
 
 @dataclass(frozen=True, eq=False)
 class Memory:
@@ -68,11 +70,12 @@ class Memory:
             zero.copy(), np.zeros(m, dtype=bool), along.copy(), zero.copy(), zero.copy(), zero.copy(),
         )  # fmt: skip
 
-    def states(self, count: int) -> PairStates:
-        """Return the states of ``count`` pairs, those behind the m remembered closed and sticking."""
+    def states(self, count: int, ties: Array = NO_TIES) -> PairStates:
+        """Return the states of ``count`` pairs: the m remembered, others closed, ``ties`` the last (k,)."""
         normal = np.full(count, int(Normal.CLOSED), dtype=np.int8)
         direction = np.zeros((count, self.slip.shape[1]))
         normal[: len(self.key)], direction[: len(self.key)] = self.contact, self.slip
+        normal[count - len(ties) :] = ties
         return PairStates(normal, direction)
 
     def handed(self, source: Array, target: Array, frame: Array, swapped: Array) -> Memory:

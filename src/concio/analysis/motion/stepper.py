@@ -175,9 +175,7 @@ class Stepper:
         problem = assembled(self.matrix(h), b, parts, force, speed)
         m, count = len(memory.key), problem.pairs
         k = m + len(maker.held)
-        states = memory.states(count)
-        if ties is not None:
-            states.normal[k:] = ties.states()
+        states = memory.states(count) if ties is None else memory.states(count, ties.states())
         t0 = np.zeros((count, problem.dim))
         t0[:m] = memory.force
         self.solver.begin()

@@ -24,6 +24,7 @@ from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.error_units import measure
 from concio.problem.pair_state import Normal, PairStates
 from concio.problem.tolerances import AT_BOUND
+from concio.read_only import read_only
 from concio.representation import short_repr
 
 OPEN, CLOSED, CRUSHED = int(Normal.OPEN), int(Normal.CLOSED), int(Normal.CRUSHED)
@@ -98,6 +99,7 @@ class LinearPath:
 
 @short_repr
 @dataclass(frozen=True, eq=False)
+@read_only
 class PathState:
     """State of the structure at one point of a path.
 
