@@ -363,7 +363,7 @@ def _torsion(found: LimitResult) -> str:
 def _unchecked(found: LimitResult, outcome: Outcome) -> tuple[str, ...]:
     """Return what would be expected of a limit load and was not checked."""
     told = []
-    if found.steps is None and found.path is None:
+    if found.steps is None and found.path is None and not found.none_of_it:
         told.append(
             f"what Coulomb friction carries as the load grows (neither a path nor load steps: "
             f"{found.path_note})"
