@@ -117,6 +117,7 @@ def main() -> None:
         sys.stderr.write("Error: standard output: it is closed\n  -> send it somewhere: > file, or > /dev/null\n")
         sys.exit(2)
     memory.keep_memory()
+    memory.fewer_collections()
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")  # it reads every installed package to find any
     try:
         asked_of(sys.argv[1:])()
