@@ -302,3 +302,17 @@ def test_a_wall_has_a_patch_for_each_joint() -> None:
     assert level.sum() == 19 * 39
     assert (~level).sum() == 20 * 19
     assert all(p < q for p, q in pairwise(found.first))
+
+
+@pytest.mark.parametrize("high", [0.0, 1e-3])
+@pytest.mark.parametrize("face", range(6))
+def test_a_face_in_pieces_is_one_face(face: int, high: float) -> None:
+    """Two triangles of one plane, as files have them, touch like the face that they are."""
+    loop = BOX.faces[face]
+    cut = (loop[:3], (loop[0], *loop[2:]))
+    pieces = Polyhedron("b", BOX.vertices, (*BOX.faces[:face], *cut, *BOX.faces[face + 1 :]))
+    floor = Polyhedron.box("floor", (-2.0, -2.0, -1.0), (2.0, 2.0, -high))
+    beside = Polyhedron.box("beside", (1.0 + high, 0.25, 0.25), (2.0, 0.75, 2.0))
+    one, other = (described(contacts([b, floor, beside], 0.01)) for b in (BOX, pieces))
+    assert len(one) == 8
+    assert same_rows(one, other)

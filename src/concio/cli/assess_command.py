@@ -197,6 +197,8 @@ def mechanism_lines(m: LocalMechanism) -> list[str]:
         period = f", return period {number(o.T_R)} years" if o.T_R == o.T_R else ""
         lines.append(f"    {o.level:18s} a_g of capacity {number(o.a_g, 4)} g, zeta_E {number(o.zeta, 4)}{period}")
     lines += [f"    {level:18s} not checked" for level in m.unchecked]
+    if not m.at_its_height:
+        lines.append(f"    at z = {number(m.level)} m         not checked: all of this is as on the ground")
     if m.found.flow == "associated":
         lines.append("    upper bound        a joint slides, and no Coulomb state was found: alpha_0 may be less")
     return lines

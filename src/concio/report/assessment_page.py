@@ -44,10 +44,6 @@ UNITS = {"weight": "-", "pressure": "kN/m2", "traction": "kN/m2", "point": "kN",
 
 BESIDE_LOADS = 30
 """The picture of a wall of more blocks has the width of the page, so that their names can be read."""
-IN_DETAIL = 1
-"""Mechanisms that are printed in detail unless all are asked for."""
-
-
 def write_assessment_report(found: Assessment, path: Path | str, **options: Any) -> Path:
     """Write the report of an assessment as HTML, or as docx; options as :class:`AssessmentReport`."""
     path = Path(path)
@@ -109,24 +105,16 @@ class AssessmentReport(Texts):
         parts.append(f"<footer>{footer}</footer>")
         return page_html(title, typeset("".join(parts)), language=self.language, kind="assessment")
 
-    @cached_property
-    def detailed(self) -> list[int]:
-        """Which mechanisms are printed in detail: those that decide."""
-        every = self.found.mechanisms
-        lowest = (min(range(len(every)), key=lambda k: every[k].zeta_at(v), default=0) for v in self.found.levels)
-        return sorted({0, *lowest})[:IN_DETAIL]
-
     def mechanisms(self) -> list[str]:
-        """Return what decides in detail, what has a name or is below one by its checks; on request all in detail."""
+        """Return the first, which decides, in detail, and what has a name or is below one; on request all in detail."""
         mine, made = self.found.arguments.get("mechanisms") or {}, []
         every = self.found.mechanisms
-        shown = self.detailed
         for k, m in enumerate(every):
-            if self.head.full or k in shown:
+            if self.head.full or k == 0:
                 made.append(mechanism_html(self, m, k + 1, self.found.curve))
             elif m.section is None and (m.name in mine or m.least < 1.0):  # of strips there is a table
                 made.append(brief_html(self, m, k + 1))
-        if len(every) > len(shown) and not self.head.full:
+        if len(every) > 1 and not self.head.full:
             made.append(f"<p class=note>{self.say('not_full')}</p>")
         return made
 
@@ -281,10 +269,9 @@ class AssessmentReport(Texts):
         w, found = self.words, self.found
         rows = []
         for k, m in enumerate(found.mechanisms, 1):
-            if m.section is not None and k - 1 not in self.detailed and not self.head.full:
+            if m.section is not None and k > 1 and not self.head.full:
                 continue  # the table of strips holds it
-            settled = m.complete or m.least < 1
-            verdict = self.verdict(m.least, m.least >= 1) if settled else self.say("unchecked")
+            verdict = self.outcome_of(m, found)
             rows.append([f'<a href="#m{k}">{escape(self.name(m))}</a>', escape(self.way(m.direction)),
                          self.n(m.multiplier, 6), self.n(m.e_star), self.n(m.onset), self.n(m.d0),
                          self.n(m.zeta if m.decisive else math.nan), verdict])  # fmt: skip

@@ -19,7 +19,9 @@ from concio.verdict.assessment_verdict import check_words, ratio_words
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from concio.analysis.seismic.assessment import Assessment
     from concio.analysis.seismic.checks import Check
+    from concio.analysis.seismic.local_mechanism import LocalMechanism
 
 PART = {
     "above": r"above z = (\S+) m(?: of (.*))?",
@@ -128,6 +130,16 @@ class Texts:
         if not math.isfinite(ratio):
             return escape(self.n(ratio))
         return self.toned(ratio_words(ratio, holds, self.language, self.n), holds)
+
+    def outcome_of(self, m: LocalMechanism, found: Assessment) -> str:
+        """Return in a table what came of a mechanism: nothing is verified of which something was not checked."""
+        if m.least < 1:
+            return self.verdict(m.least, False)
+        if not m.complete:
+            return self.say("unchecked")
+        if m.at_its_height or "height" in found.arguments.get("elsewhere", ()):
+            return self.verdict(m.least, True)
+        return self.say("not_at_height", zeta=self.n(m.least))
 
     def checked(self, check: Check, *, decides: bool) -> str:
         """Return the outcome of a check."""

@@ -23,10 +23,7 @@ def strips_html(t: Texts, found: Assessment) -> str:
             continue
         motion = s.motion_of_worst
         how = t.words[f"moves_{motion}"] if motion else "&ndash;"
-        settled = m.complete or m.least < 1
-        said = t.verdict(m.least, m.least >= 1) if settled else t.say("unchecked")
-        if s.like:
-            said = t.say("strip_like", name=t.strip(s.like))
+        said = t.say("strip_like", name=t.strip(s.like)) if s.like else t.outcome_of(m, found)
         rows.append([name, f"{escape(how)}, {escape(t.way(m.direction))}", t.n(m.multiplier, 5), t.n(m.level),
                      t.n(m.d0), t.n(m.zeta if m.decisive else math.nan), said])  # fmt: skip
     head = [t.words[k] for k in ("strip", "strip_motion", "alpha0", "strip_level", "d0", "zeta", "outcome")]

@@ -495,3 +495,20 @@ def test_a_gap_of_a_rule_is_added_to_that_of_the_outlines() -> None:
     pairs = concio.assemble(Model((ground, high, low), materials, laws, rules=rules, gap_reach=0.01)).pairs
     assert set(pairs.body_b) == {1, 2}
     assert pairs.gap == pytest.approx(np.where(pairs.body_b == 1, 0.005, 0.0), abs=1e-15)
+
+
+@pytest.mark.parametrize("turn", [None, TURN])
+def test_pairs_of_elastic_blocks_lie_on_their_joints(turn: np.ndarray | None) -> None:
+    """Inside the patch, and with the resultant of a uniform pressure in its middle, wherever it is in space."""
+    bodies = (GROUND, box("a", (1.0, 2.0, 0.0), (2.5, 3.0, 1.0)), box("b", (1.5, 2.25, 1.0), (3.0, 4.0, 1.5)))
+    assembly = concio.assemble(model(*(bodies if turn is None else (turned(b, turn) for b in bodies))))
+    pairs = assembly.pairs
+    assert len(assembly.detection.interfaces) == 2
+    for k, patch in enumerate(assembly.detection.interfaces):
+        mine = pairs.interface == k
+        place, share = pairs.point[mine], pairs.area[mine]
+        assert share.sum() == pytest.approx(patch.area, rel=1e-9)
+        np.testing.assert_allclose(share @ place / share.sum(), patch.middle, atol=1e-9)
+        low, high = patch.polygon.min(axis=0), patch.polygon.max(axis=0)
+        assert (place >= low - 1e-9).all()
+        assert (place <= high + 1e-9).all()

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
+import concio
 from concio.errors import GeometryError, InputError
 from concio.io.dxf_out import write_dxf
 from concio.kinematics.mass import signed_area
@@ -322,3 +324,18 @@ def test_table_in_another_unit(tmp_path):
     assert read_blocks(tmp_path / "b.json")[0].area == pytest.approx(0.08)
     with pytest.raises(InputError, match="no such file"):
         read_blocks(tmp_path / "c.json")
+
+
+@pytest.mark.parametrize("suffix", ["json", "csv"])
+def test_blocks_of_a_table_are_rigid_where_their_material_is(tmp_path, suffix):
+    """Tables have no word for rigid ones; fixed blocks stay fixed, elastic ones elastic."""
+    elastic = concio.Elastic(E=1e6, nu=0.2, unit_weight=20.0)
+    bodies = tuple(replace(b, kind=b.kind if b.kind == "fixed" else "elastic")
+                   for b in wall(length=1, height=0.5, block=elastic).bodies)  # fmt: skip
+    write_blocks(tmp_path / f"blocks.{suffix}", bodies)
+    file = tmp_path / "model.toml"
+    for material, kind in (("E = '1 MPa'\nunit_weight = 20", "elastic"), ("kind = 'rigid'\nunit_weight = 20", "rigid")):
+        file.write_text(f"blocks_file = 'blocks.{suffix}'\n[materials.block]\n{material}\n[joints.joint]\nfriction = 1")
+        read = concio.load(file)
+        assert [b.kind for b in read.bodies] == ["fixed" if b.kind == "fixed" else kind for b in bodies]
+        assert any(b.kind == "fixed" for b in read.bodies)

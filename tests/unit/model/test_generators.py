@@ -425,3 +425,16 @@ def test_the_width_of_a_course_at_a_sloping_arch_is_the_lesser_of_both_edges():
     assert [b.bounds[0] for b in _cut(part, 3.0, 1.0, 0)] == pytest.approx([-3.0, -2.0])
     other = shapely.affinity.scale(part, xfact=-1.0, origin=(0, 0))
     assert [b.bounds[2] for b in _cut(other, 3.0, 1.0, 0)] == pytest.approx([2.0, 3.0])
+
+
+@pytest.mark.parametrize("spandrels", [True, False])
+def test_an_arch_on_piers_is_as_wide_as_its_span_and_two_piers(spandrels: bool) -> None:
+    """Spandrels end above the outer faces of the piers, and cover the arch by the fill at least."""
+    made = concio.arch_on_piers(span=2.0, ring=0.25, voussoirs=11, pier_width=0.7, pier_height=1.5, pier_courses=5,
+                                spandrels=spandrels, fill=0.3, block="rigid", unit_weight=20.0)  # fmt: skip
+    corners = np.vstack([b.vertices for b in made.free_bodies])
+    assert np.abs(corners[:, 0]).max() == pytest.approx(1.0 + 0.7)
+    outer = corners[np.abs(corners[:, 0]) > 1.69, 1].max()
+    assert outer == pytest.approx(corners[:, 1].max() if spandrels else 1.5)
+    crown = max(b.vertices[:, 1].max() for b in made.free_bodies if b.name.startswith("v"))
+    assert outer >= crown + 0.3 - 1e-9 or not spandrels

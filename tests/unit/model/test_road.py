@@ -350,3 +350,10 @@ def test_strength_of_a_fill_without_an_angle_is_not_left_aside(key: str) -> None
 def test_a_direction_that_is_none_is_refused() -> None:
     with pytest.raises(InputError, match="direction = 'west'"):
         Vehicle("own", (Axle(0.0, 10.0),), direction="west")  # type: ignore[arg-type]
+
+
+def test_the_width_of_the_rule_without_a_vehicle_is_that_of_a_lorry() -> None:
+    """Wheels 1.8 m apart, and the spread on either side of them."""
+    model = concio.loads(RULE)
+    assert model.fill is not None
+    assert width_used(model, model.fill)[0] == pytest.approx(1.8 + 0.4)

@@ -386,3 +386,11 @@ def test_a_wall_that_ends_on_another_butts_against_it_whichever_is_drawn_first(a
     for along in (half, 6.0 - half):
         corner = plan.PlanWall(axis, *reach, along, 2.0)
         assert plan.junctions([corner, long], half) == [plan.Junction(0, 1)]
+
+
+@pytest.mark.parametrize("far", [0.0, 1e6, -1e6])
+def test_walls_far_from_the_origin_are_not_more_blocks(far: float) -> None:
+    """Coordinates of a survey are large: blocks are counted by lengths."""
+    lines = [((far, far), (far + 2.0, far)), ((far, far), (far, far + 2.0))]
+    near = concio.walls(lines=[((0, 0), (2, 0)), ((0, 0), (0, 2))], height=0.5, block_size=(0.5, 0.25, 0.25), **RIGID)
+    assert len(concio.walls(lines=lines, height=0.5, block_size=(0.5, 0.25, 0.25), **RIGID).bodies) == len(near.bodies)

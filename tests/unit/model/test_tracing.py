@@ -280,3 +280,19 @@ def test_pieces_of_a_block_are_not_lost() -> None:
     labels[10, 10] = 6
     with pytest.raises(InputError, match="block 6 is too small for an outline"):
         trace_labels(labels, photo).model()
+
+
+def test_outlines_of_regions_are_their_outer_boundaries_counter_clockwise() -> None:
+    """A ring of pixels about another region keeps its outer boundary; of a region in two pieces the larger counts."""
+    labels = np.zeros((12, 15), dtype=int)
+    labels[1:11, 2:13] = 1
+    labels[3:9, 4:11] = 2
+    labels[5:6, 6:8] = 0
+    labels[0:1, 0:3] = 3
+    labels[11:12, 4:12] = 3
+    found = shared_outlines(labels, 0.0)
+    assert set(found) == {1, 2, 3}
+    for label, area in ((1, 110.0), (2, 42.0), (3, 8.0)):
+        ring = shapely.LinearRing(found[label] * [1, -1])
+        assert ring.is_ccw
+        assert shapely.Polygon(ring).area == pytest.approx(area)

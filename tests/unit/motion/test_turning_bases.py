@@ -162,3 +162,12 @@ def test_a_support_does_not_turn_with_the_base():
     model = replace(turntable(0.6, 0.3), supports=(concio.Support("hold", "b0", polygon=foot),))
     with pytest.raises(concio.InputError, match="does not turn with the base"):
         concio.dynamics(model, {"rz": Spin(1.0)}, 0.1, base="moving")
+
+
+def test_a_motion_lasts_as_long_as_its_longest_component() -> None:
+    """Rotations count, too; nothing lasts no time."""
+    short, long = (concio.Pulse("sine", 1.0, length) for length in (0.5, 2.0))
+    assert Ground.of({"x": short, "y": long}).duration == pytest.approx(2.0)
+    assert Ground.of({"x": long, "z": short}, dim=3).duration == pytest.approx(2.0)
+    assert Ground.of({"x": short, "rz": Spin(0.1, duration=3.0)}).duration == pytest.approx(3.0)
+    assert Ground.of(None).duration == 0.0

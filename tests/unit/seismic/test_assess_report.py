@@ -6,6 +6,7 @@ import json
 import math
 import re
 import tomllib
+from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
 
@@ -16,6 +17,7 @@ from commands import run
 from concio.analysis.seismic.anchors import Anchor
 from concio.analysis.seismic.assessment_asked import Head, read_asked
 from concio.analysis.seismic.variations import tie_force, variations
+from concio.cli.assess_command import mechanism_lines
 from concio.errors import InputError
 from concio.report.assessment_page import AssessmentReport
 from concio.report.language import words_of
@@ -192,3 +194,55 @@ def test_the_console_says_what_alpha_0_depends_on_or_why_it_has_no_derivatives(t
     start = "One per cent more of each changes the multiplier by: all lengths along y +1 %, all lengths along z -1 %"
     assert told.startswith(start)
     assert lines[0.05, "false"] == []
+
+
+LOW = {"SLV": {"a_g": 0.01, "F0": 2.5, "Tc": 0.3}}
+
+
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        ({}, ["verified", "on the ground"]),
+        ({"elsewhere": ("height",)}, ["verified", "verified"]),
+        ({"curve": "straight"}, ["verified", "on the ground"]),
+    ],
+)
+def test_a_row_is_verified_where_everything_of_it_was_checked(more: dict[str, object], said: list[str]) -> None:
+    """A part that starts at 3 m is not, without the building that amplifies the motion there, whatever its zeta_E."""
+    high = {"upper": ["c3", "c4"]}
+    found = concio.assess(overturning(4), site=site(hazard=LOW), direction="left", mechanisms=high, **more)
+    rows = re.findall(r"<tr><td>(?:(?!</tr>).)*</tr>", AssessmentReport(found).search())
+    assert [m.level for m in found.mechanisms] == [0.0, 3.0]
+    assert [m.at_its_height for m in found.mechanisms] == [True, False]
+    for row, m, words in zip(rows, found.mechanisms, said, strict=True):
+        assert row.split("<td")[-1].count(words) == 1, row
+        assert f"{m.least:.4g}" in row.split("<td")[-1]
+    lines = [mechanism_lines(m)[-1] for m in found.mechanisms]
+    assert ["not checked: all of this is as on the ground" in line for line in lines] == [False, True]
+    assert [m["at_its_height"] for m in found.summary()["mechanisms"]] == [True, False]
+
+
+def test_a_row_without_a_curve_is_not_checked() -> None:
+    """Whatever was verified at other limit states; what fails at one fails."""
+    found = concio.assess(overturning(4), site=site(hazard=LOW), direction="left", levels=["SLV"])
+    (m,) = found.mechanisms
+    text = AssessmentReport(found)
+    assert "verified" in text.outcome_of(m, found)
+    without = replace(m, checks=())
+    assert not without.complete
+    assert text.outcome_of(without, found) == "not checked"
+    fails = replace(m, periods={"SLV": replace(m.periods["SLV"], a_g=0.9)})
+    assert fails.least < 1
+    assert "not verified" in text.outcome_of(fails, found)
+
+
+def test_the_first_mechanism_is_printed_in_detail_and_decides_at_every_order_of_the_names() -> None:
+    """Its number, its name and its zeta_E are those of the headline; all are printed on request."""
+    parts = {"top": ["c4"], "upper": ["c3", "c4"]}
+    for names in (list(parts), list(parts)[::-1]):
+        found = concio.assess(overturning(4), site=site(building={"height": 6.0, "storeys": 2, "T1": 0.25, "xi": 10}),
+                              direction="left", mechanisms={name: parts[name] for name in names})  # fmt: skip
+        assert found.mechanisms[0].zeta == found.zeta == min(m.zeta for m in found.mechanisms)
+        short, full = (AssessmentReport(found, head=Head(full=full)).mechanisms() for full in (False, True))
+        assert short[0] == full[0]
+        assert [one == other for one, other in zip(short[1:3], full[1:3], strict=True)] == [False, False]

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 import concio
+from concio.analysis.seismic.macro_blocks import GROUND
 from concio.analysis.seismic.macro_contacts import contacts_of
 from concio.analysis.seismic.sequence import Sequence, State
 from concio.analysis.seismic.tie_history import TieHistory
@@ -115,3 +117,27 @@ def test_contacts_without_a_force_do_not_sink_in_a_step(d: int, unit: float) -> 
     now = stated(sequence.contacts, found, sequence.size)
     assert np.abs(now.gap).max() <= 1e-9 * unit
     assert now.drift[:, 0] == pytest.approx(length * own, rel=1e-3, abs=1e-9 * unit)
+
+
+@pytest.mark.parametrize("d", [2, 3])
+def test_a_tie_between_two_blocks_pulls_both_with_its_force(d: int) -> None:
+    """Along itself, against each other, whichever end is written first; one to the ground pulls its block alone."""
+    base = on_its_foot(d, 1.0)
+    first, second = (tuple(float(v) for v in b.centre + 0.3 * np.eye(d)[-1]) for b in base.mechanics.blocks)
+
+    def pulled(a: str, at_a: tuple[float, ...], b: str, at_b: tuple[float, ...], of: tuple[int, int]) -> np.ndarray:
+        bar = concio.Tie("bar", a, at_a, b, at_b, stiffness=100.0, prestress=2.5)
+        sequence = replace(base, ties=((bar, *of),))
+        forces, longer, load = sequence.pulls(sequence.at_rest(), TieHistory.none(1))
+        assert forces == pytest.approx([2.5])
+        assert longer == pytest.approx([0.0])
+        found: np.ndarray = load.reshape(2, -1)
+        return found
+
+    both, swapped = pulled("0", first, "1", second, (0, 1)), pulled("1", second, "0", first, (1, 0))
+    np.testing.assert_allclose(both, swapped, atol=1e-15)
+    np.testing.assert_allclose(both[0, :d], 2.5 * np.eye(d)[0], atol=1e-15)
+    np.testing.assert_allclose(both[1, :d], -2.5 * np.eye(d)[0], atol=1e-15)
+    np.testing.assert_allclose(pulled("0", first, "", second, (0, GROUND))[0], both[0], atol=1e-15)
+    np.testing.assert_allclose(pulled("", second, "0", first, (GROUND, 0))[0], both[0], atol=1e-15)
+    assert not pulled("", second, "0", first, (GROUND, 0))[1].any()

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import scipy.sparse as sp
 
+import concio
 from concio.errors import InputError
 from concio.problem.contact_problem import ContactProblem, Laws
 from concio.problem.pair_state import PairStates
@@ -230,3 +231,16 @@ def test_the_last_direction_of_a_lost_path_goes_with_its_load(sense: float, outc
     nothing = _Follower.finish(follower, [], [], outcome, None)  # type: ignore[arg-type]
     assert (nothing.direction == 0.0).all()
     assert nothing.factorisations == 7
+
+
+@pytest.mark.parametrize("size", [6, 10])
+def test_a_dry_panel_at_rest_has_an_exact_path(size: int) -> None:
+    """Hundreds of pairs touch without force: which of them slip first is found by a small step, not by a finite one."""
+    sizes = {"courses": size, "blocks": size, "joint": 0.0, "base": "full"}
+    panel = concio.running_bond_panel(**sizes, friction=0.6, top_pressure=10.0)
+    found = concio.run_path(panel, [concio.Stage("top", {"top": 1.0})])
+    assert found.complete
+    kinds = [event.kind for event in found.events]
+    assert "restarts" not in kinds
+    assert "jumps" not in kinds
+    assert all(event.parameter == 0.0 for event in found.events), "nothing changes on a ray"

@@ -25,6 +25,9 @@ from concio.verdict.assessment_verdict import none_sentence
 
 Array = np.ndarray
 
+ABOVE = 1e-6
+"""Mechanisms that start higher than this are above the ground [m]."""
+
 PARALLEL = 1e-3
 """Velocities out of a plane below this share of the others are none."""
 
@@ -209,6 +212,11 @@ class LocalMechanism:
         """Whether every limit state was checked, with a multiplier that is not a mere upper bound."""
         return not self.unchecked and self.found.flow != "associated"
 
+    @property
+    def at_its_height(self) -> bool:
+        """Whether the checks count where it starts: on the ground, or as the building amplifies the motion there."""
+        return bool(self.site.building) or self.level <= ABOVE
+
     def zeta_at(self, level: str) -> float:
         """Return zeta_E at a limit state; ``inf`` where it could not be checked."""
         return self.outcome(level).zeta if any(c.level == level for c in self.checks) else math.inf
@@ -249,6 +257,7 @@ class LocalMechanism:
             "control_body": self.control[0],
             "control_point": list(self.control[1]),
             "level": self.level,
+            "at_its_height": self.at_its_height,
             "in_one_plane": self.in_one_plane,
             "d_C0": _number(self.followed.end),
             "d0": _number(self.d0),

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from concio.analysis.seismic.default_parts import structures_of
+from concio.analysis.seismic.local_mechanism import ABOVE
 from concio.contact.assembly import Assembly
 from concio.verdict.unseen import SEEN, listed, unseen_bodies
 
@@ -17,9 +18,6 @@ if TYPE_CHECKING:
 
 ELSEWHERE = ("out of plane", "height", "ties")
 """What an author may answer for, so that it is not asked for here."""
-
-ABOVE = 1e-6
-"""Mechanisms that start higher than this are above the ground [m]."""
 
 
 @dataclass(frozen=True)
