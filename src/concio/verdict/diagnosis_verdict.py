@@ -235,6 +235,8 @@ class _Words:
         told = []
         if not future.large:
             told.append(self.words["stands_small"])
+        elif not future.began:
+            return ()
         elif not future.stands:
             return (self.say("stands_not", share=f"{self.write(100 * future.followed, 3)} %"),)
         elif math.isinf(future.limit):
@@ -274,7 +276,9 @@ class _Words:
         told = self.say("proof", worst=self.short(worst), allowed=f"{CERTIFIED:.0e}", tried=len(found.trials),
                         runs=found.forward.runs)  # fmt: skip
         future = found.future
-        return told + self.say("proof_large", residual=self.short(future.residual)) if future and future.large else told
+        if future is None or not future.large or not future.began:
+            return told
+        return told + self.say("proof_large", residual=self.short(future.residual))
 
     def short(self, value: float) -> str:
         """Return a residual with two digits."""
@@ -313,6 +317,8 @@ class _Words:
             told.append(self.say(key, count=len(found.lost)))
         if found.best is not None and found.best.chosen and (found.future is None or not found.future.large):
             told.append(self.words["unchecked_large"])
+        elif found.future is not None and not found.future.began:
+            told.append(self.words["unchecked_began"])
         return tuple(told)
 
     def noticed(self) -> tuple[str, ...]:

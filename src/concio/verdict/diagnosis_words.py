@@ -79,6 +79,8 @@ EN = {
     "unchecked_lost": "{count} choices of motions, which could not be followed to any fit",
     "unchecked_lost_one": "one choice of motions, which could not be followed to any fit",
     "unchecked_large": "whether it stands at large displacements",
+    "unchecked_began": "whether it stands at large displacements: no equilibrium was found there even before anything "
+    "moved",
     "unchecked_tests": "whether this cause is wrong: there are only as many measurements as motions",
     "step_measure": "Measure where the causes differ most, and diagnose again.",
     "step_doubt": "Measure what is in doubt again.",
@@ -162,6 +164,8 @@ IT = {
     "unchecked_lost": "{count} scelte di movimenti, che non si sono potute seguire",
     "unchecked_lost_one": "una scelta di movimenti, che non si è potuta seguire",
     "unchecked_large": "se sta in equilibrio in grandi spostamenti",
+    "unchecked_began": "se sta in equilibrio in grandi spostamenti: non vi si è trovato equilibrio neppure prima di "
+    "ogni movimento",
     "unchecked_tests": "se questa causa è falsa: le misure sono tante quanti i movimenti",
     "step_measure": "Misurare dove le cause differiscono di più, e ripetere la diagnosi.",
     "step_doubt": "Ripetere la misura dubbia.",

@@ -14,6 +14,12 @@ from concio.analysis.cracks.forward import Forward
 from concio.analysis.cracks.moved import moved_model
 from concio.analysis.cracks.observed import readings
 from concio.analysis.cracks.places import all_places
+from concio.analysis.motion.scheme import Scheme
+from concio.analysis.motion.start_on_moved_supports import begun
+from concio.analysis.motion.state import MotionState
+from concio.analysis.motion.statics import Statics
+from concio.contact.reference import Reference
+from concio.units import GRAVITY
 
 
 def read_after(model, measured, candidates, motions, **options) -> list[Measurement]:
@@ -56,6 +62,27 @@ def test_the_crown_of_a_three_hinged_arch_sinks_as_its_two_bars_say() -> None:
     np.testing.assert_allclose(found.best.predicted, [exact[m.name] for m in cracks], rtol=2e-3, atol=1e-6)
     assert found.future.stands
     assert found.future.stands_another
+    assert "the last state to" in found.verdict.proof
+    never = replace(found.future, stands=False, followed=0.0, limit=0.0, residual=np.nan)
+    open_ = replace(found, future=never).verdict
+    assert "last state" not in open_.proof
+    assert "nan" not in open_.proof
+    assert "large displacements" not in open_.answer
+    assert open_.unchecked[-1].endswith("even before anything moved")
+
+
+def test_what_no_equilibrium_was_found_beyond_is_the_last_that_was() -> None:
+    """A block of 1 x 2 m on a floor that turns stands up to tan(turn) = b / h, where 1 rad is asked for."""
+    tower = concio.column(width=1.0, height=2.0, blocks=1, block="rigid", unit_weight=20.0, friction=2.0)
+    ground = next(b.name for b in tower.bodies if b.kind == "fixed")
+    turned = replace(tower, supports=(concio.Support("turns", ground, rotation=1.0),))
+    reference = Reference.of(turned, GRAVITY)
+    statics = Statics(reference, Scheme(brittle=True), {"dead": 1.0, "settlement": 1.0})
+    lost, share, last = begun(statics, MotionState.at_rest(reference))
+    assert not lost.found
+    assert last.found
+    assert last.residual < 1e-9
+    assert share == pytest.approx(np.arctan(0.5), rel=1e-2)
 
 
 def twin():

@@ -54,7 +54,7 @@ class Future:
     asked : float
         Times the motion so far that were examined.
     residual : float
-        Worst relative violation of the equations in the last state that was found.
+        Worst relative violation of the equations in the last state that was found; nan where none was.
     another : float
         Times the motion so far that another centimetre makes.
     opening : float
@@ -73,6 +73,11 @@ class Future:
     another: float
     opening: float
     opening_now: float
+
+    @property
+    def began(self) -> bool:
+        """Whether any equilibrium was found there, as described if not with the motion."""
+        return not np.isnan(self.residual)
 
     @property
     def stands_another(self) -> bool:
@@ -121,10 +126,10 @@ def _followed(forward: Forward, cause: Cause, candidates: Sequence[Candidate], a
     try:
         reference = Reference.of(Near.of(model).model, GRAVITY)
         statics = Statics(reference, Scheme(brittle=True), factors)
-        found, share, _ = begun(statics, MotionState.at_rest(reference))
+        found, share, last = begun(statics, MotionState.at_rest(reference))
     except ConcioError:
         return 0.0, np.nan
-    return (share if not found.found else 1.0) * asked, float(found.residual)
+    return (share if not found.found else 1.0) * asked, float(last.residual) if last.found else np.nan
 
 
 def _size(forward: Forward, cause: Cause, candidates: Sequence[Candidate]) -> float:

@@ -94,10 +94,11 @@ class MovedSupports:
         return float((np.linalg.norm(self.shift, axis=1) + turn * arm).max())
 
 
-def begun(statics: Statics, state: MotionState) -> tuple[Balanced, float, MotionState]:
+def begun(statics: Statics, state: MotionState) -> tuple[Balanced, float, Balanced]:
     """Return the equilibrium under the loads that do not grow, or the attempt that failed.
 
-    With it come the share of the motion of supports that the structure stands, and the last state in which it does.
+    With it come the share of the motion of supports that the structure stands, and the last equilibrium in which it
+    does; where there is none, the attempt that failed once more.
 
     Parameters
     ----------
@@ -108,7 +109,7 @@ def begun(statics: Statics, state: MotionState) -> tuple[Balanced, float, Motion
     moved = MovedSupports.of(statics)
     found = statics.balance(state, 0.0)
     if not moved.any or not found.found:
-        return found, 0.0 if moved.any else 1.0, state
+        return found, 0.0 if moved.any else 1.0, found
     part = first = min(1.0, PART * statics.width / moved.largest(statics))
     done, lost = 0.0, found
     while done < 1.0:
@@ -118,13 +119,13 @@ def begun(statics: Statics, state: MotionState) -> tuple[Balanced, float, Motion
             lost = max(lost, trial, key=_reach) if not lost.found else trial
             part *= 0.5
             if part < SMALLEST * first:
-                return lost, done, found.state
+                return lost, done, found
             continue
         found, lost, done = trial, trial, done + part
         if 1.0 - done < 1e-12:
             done = 1.0
         part = min(GROWTH * part, first)
-    return found, 1.0, found.state
+    return found, 1.0, found
 
 
 def first_state(
@@ -137,9 +138,10 @@ def first_state(
     if balanced.found:
         return balanced.state, True, ""
     if 0.0 < share < 1.0:
-        return last, False, supports_short(share)
+        return last.state, False, supports_short(share)
     what = "the motion begins as described" if structure.alone else f"'{structure.name}' begins as described"
-    return last, False, f"no equilibrium under the loads was found at the start: {what}"
+    begins = last.state if last.found else state
+    return begins, False, f"no equilibrium under the loads was found at the start: {what}"
 
 
 def _reach(found: Balanced) -> float:
