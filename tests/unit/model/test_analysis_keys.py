@@ -58,6 +58,33 @@ def test_the_thickness_of_a_file_is_that_of_its_parts_and_of_its_table_of_blocks
     assert [b.thickness for b in read.outlines] == [0.3, 0.3, 0.8]
 
 
+@pytest.mark.parametrize(
+    ("part", "thickness"),
+    [
+        (f"[column]\n{GENERATED['column']}", 0.3),
+        (f"[column]\n{GENERATED['column']}thickness = 0.5\n", 0.5),
+        (f"[column]\n{GENERATED['column']}[analysis]\nthickness = 0.6\n", 0.6),
+        (STONES + "[[blocks]]\nname = 'a'\nrectangle = [[0, 0], [1, 1]]\nmaterial = 'stone'\n", 0.3),
+        (f"units.length = 'mm'\n[[parts]]\nname = 'in'\n[parts.column]\n{GENERATED['column']}", 0.3),
+        ("[[parts]]\nname = 'in'\nfile = 'inner.toml'\n", 0.3),
+    ],
+)
+def test_the_thickness_of_a_file_is_that_of_the_files_of_its_parts(
+    part: str, thickness: float, tmp_path: Path
+) -> None:
+    (tmp_path / "inner.toml").write_text(f"[column]\n{GENERATED['column']}")
+    (tmp_path / "part.toml").write_text(part)
+    (tmp_path / "whole.toml").write_text("[[parts]]\nname = 'one'\nfile = 'part.toml'\n" + STATED)
+    assert depths(concio.load(tmp_path / "whole.toml")) == {thickness}
+
+
+def test_files_of_parts_in_space_have_no_thickness_to_take(tmp_path: Path) -> None:
+    (tmp_path / "part.toml").write_text(f"[column]\n{GENERATED['column']}[extrusion]\nthickness = 0.4\n")
+    (tmp_path / "whole.toml").write_text("[[parts]]\nname = 'one'\nfile = 'part.toml'\n" + STATED)
+    with pytest.raises(concio.InputError, match=r"whole.toml, \[analysis\]: thickness means nothing"):
+        concio.load(tmp_path / "whole.toml")
+
+
 SPACE = STONES + '[[blocks]]\nname = "cube"\nbox = [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]]\nmaterial = "stone"\n'
 NOTHING = {
     "thickness in space": (SPACE + STATED, "thickness means nothing for blocks in space"),

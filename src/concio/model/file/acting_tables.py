@@ -212,7 +212,7 @@ class AnalysisTable(Table):
     Keys
     ----
     thickness :
-        Out of plane, of bodies that state none.
+        Out of plane, of bodies that state none; also in the files of its parts, where these state none.
     """
 
     plane: Literal["stress", "strain"] = "stress"

@@ -44,7 +44,9 @@ NO_BLOCKS = "the file describes no blocks"
 """What is said of a file that is sound so far, and has no blocks yet."""
 
 
-def build(data: FileTable, folder: Path, where: str, read: Callable[[str], Model]) -> Model:
+def build(
+    data: FileTable, folder: Path, where: str, read: Callable[[str], Model], thickness: float | None = None
+) -> Model:
     """Return the model that the tables of a file describe, in kN and m.
 
     Parameters
@@ -56,12 +58,17 @@ def build(data: FileTable, folder: Path, where: str, read: Callable[[str], Model
         Name of the file, for messages.
     read : function
         Returns the model of another file, which a part names.
+    thickness : float or None
+        Of bodies that state none [m]: that of the file, or else of the file of which it is a part; None is 1 m.
 
     Raises
     ------
     InputError
         The parts of the file do not fit together; the message says where.
     """
+    stated = data.analysis
+    if thickness is not None:
+        data = data.model_copy(update={"analysis": stated.model_copy(update={"thickness": thickness})})
     with placed(where):
         materials = {name: _material(table, f"[materials.{name}]") for name, table in data.materials.items()}
         laws = {name: _law(table, f"[joints.{name}]") for name, table in data.joints.items()}
@@ -77,7 +84,7 @@ def build(data: FileTable, folder: Path, where: str, read: Callable[[str], Model
     with placed(where):
         model = crossed(model, with_drawn_road(data.fill, data.bridge_drawing, folder), data.vehicle)
         _check_names(model)
-        check_dimension(data.analysis, model.dim, extruded=data.extrusion is not None)
+        check_dimension(stated, model.dim, extruded=data.extrusion is not None)
         if data.extrusion is not None:
             from concio.model.generate.extrusion import extrude
 

@@ -136,11 +136,12 @@ def loads(text: str, *, folder: str | os.PathLike[str] = ".", name: str = "model
 
 def model_from_tables(
     data: dict[str, Any], *, folder: str | os.PathLike[str] = ".", name: str = "model text",
-    chain: tuple[Path, ...] = (),
+    chain: tuple[Path, ...] = (), thickness: float | None = None,
 ) -> Model:  # fmt: skip
     """Return the model that the tables of a TOML text describe; ``folder`` and ``name`` as in :func:`loads`.
 
-    ``chain`` holds the files that are being read: a part of a file may be a file with parts.
+    ``chain`` holds the files that are being read: a part of a file may be a file with parts. ``thickness`` is that of
+    bodies for which the text states none [m], where the file that it is a part of states one.
 
     Raises
     ------
@@ -148,7 +149,8 @@ def model_from_tables(
         As :func:`load`.
     """
     table = _checked(data, file_units(data, name), name)
-    return build(table, Path(folder), name, lambda part: _read_part(Path(folder) / part, chain))
+    depth = table.analysis.thickness if "thickness" in table.analysis.model_fields_set else thickness
+    return build(table, Path(folder), name, lambda part: _read_part(Path(folder) / part, chain, depth), depth)
 
 
 def _checked(data: dict[str, Any], units: FileUnits, name: str) -> FileTable:
@@ -162,14 +164,16 @@ def _checked(data: dict[str, Any], units: FileUnits, name: str) -> FileTable:
         raise first_fault(error, data, file_table(), name) from None
 
 
-def _read_part(path: Path, chain: tuple[Path, ...]) -> Model:
+def _read_part(path: Path, chain: tuple[Path, ...], thickness: float | None) -> Model:
     """Return the model of a file that a part of another names."""
     own = path.resolve()
     if own in chain:
         names = " -> ".join(p.name for p in (*chain, own))
         msg = f"the file is a part of itself: {names}"
         raise InputError(msg, where=str(path), hint="a part may not hold the whole")
-    return model_from_tables(read_tables(path), folder=path.parent, name=str(path), chain=(*chain, own))
+    return model_from_tables(
+        read_tables(path), folder=path.parent, name=str(path), chain=(*chain, own), thickness=thickness
+    )
 
 
 def parse(text: str, name: str) -> dict[str, Any]:
