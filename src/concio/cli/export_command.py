@@ -47,6 +47,8 @@ def export(
 
     In space also obj, stl, glb (glTF), json (COMPAS) and 3dm: the displaced blocks.
 
+    Numbers are in kN and m, whatever the units of the model file; a drawing has the unit of --unit.
+
     Example: concio export result --to vtu
     """
     from concio.io.listing import CONTENTS

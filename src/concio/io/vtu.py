@@ -50,6 +50,10 @@ class Grid:
     cell_data: Mapping[str, Array] = field(default_factory=dict)
 
 
+UNITS = "forces in kN, lengths in m, stresses in kN/m2, times in s"
+"""Written at the head of every file, whose arrays have names alone."""
+
+
 class _Appended:
     """Collects the arrays of the appended block."""
 
@@ -104,7 +108,7 @@ def write_vtu(grid: Grid, path: Path) -> Path:
         "types": grid.types.astype(np.uint8),
     }
     head = (
-        '<?xml version="1.0"?>\n'
+        f'<?xml version="1.0"?>\n<!-- {UNITS} -->\n'
         '<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">\n'
         f'<UnstructuredGrid><Piece NumberOfPoints="{len(points)}" NumberOfCells="{len(grid.types)}">\n'
         f"{section('PointData', grid.point_data)}\n{section('CellData', grid.cell_data)}\n"

@@ -446,3 +446,4 @@ def test_names_are_escaped(tmp_path: Path) -> None:
     grid = Grid(np.zeros((1, 2)), np.array([0]), np.array([1]), np.array([VERTEX]), {'a "<&': np.ones(1)})
     _, _, data, _ = _read(write_vtu(grid, tmp_path / "odd.vtu"))
     assert list(data) == ['a "<&']
+    assert b"\n<!-- forces in kN, lengths in m, " in (tmp_path / "odd.vtu").read_bytes()
