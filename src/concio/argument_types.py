@@ -17,7 +17,7 @@ CLASSES = {
     name: f"an {name}" if name[0] in "AE" else f"a {name}"
     for name in (
         "Body", "ControlPoint", "Elastic", "JointLaw", "JointRule", "Load", "PathResult",
-        "Polyhedron", "Result", "Rigid", "Stage", "Stop", "Support", "Temperature", "Tie", "Units",
+        "Polyhedron", "Result", "Rigid", "Site", "Stage", "Stop", "Support", "Temperature", "Tie", "Units",
     )
 }  # fmt: skip
 """Classes of the project that are distinguished from each other by their names."""
@@ -57,6 +57,8 @@ def _alternative(text: str) -> tuple[Check, str] | None:
         entry = checker(inner[1], inside=True)
         words = "a mapping" if entry is None else f"a mapping of names to {_plural(entry[1])}"
         return (lambda v: isinstance(v, Mapping) and (entry is None or all(map(entry[0], v.values())))), words
+    if name == "os.PathLike":
+        return PLAIN["Path"]
     if name == "Literal":
         return (lambda value: isinstance(value, str)), "a text" if "'" in rest or '"' in rest else ""
     return None
@@ -66,6 +68,10 @@ def _is_number(value: object) -> bool:
     return isinstance(value, Real) or getattr(value, "shape", None) == ()
 
 
+def _is_index(value: object) -> bool:
+    return hasattr(value, "__index__") and getattr(value, "shape", ()) == ()
+
+
 def _is_sequence(value: object) -> bool:
     return hasattr(value, "__iter__") and not isinstance(value, str | bytes | Mapping)
 
@@ -73,7 +79,7 @@ def _is_sequence(value: object) -> bool:
 PLAIN: dict[str, tuple[Check, str]] = {
     "str": (lambda value: isinstance(value, str), "a text"),
     "float": (_is_number, "a number"),
-    "int": (lambda value: isinstance(value, Integral) or hasattr(value, "__index__"), "a whole number"),
+    "int": (lambda value: isinstance(value, Integral) or _is_index(value), "a whole number"),
     "bool": (lambda value: isinstance(value, bool) or type(value).__name__ in ("bool", "bool_"), "True or False"),
     "None": (lambda value: value is None, "None"),
     "Path": (lambda value: isinstance(value, PathLike), "a path"),

@@ -17,7 +17,7 @@ from typing import Any, ParamSpec, TypeVar
 import numpy as np
 
 from concio.argument_types import Check, checker, told
-from concio.errors import ArgumentError
+from concio.errors import ArgumentError, ConcioError
 from concio.synonyms import meant
 
 P = ParamSpec("P")
@@ -91,14 +91,24 @@ def strict_with(names: Iterable[str]) -> Callable[[Callable[P, T]], Callable[P, 
 
 
 def strict_class(cls: type[T]) -> type[T]:
-    """Make the constructor of a class :func:`strict`; it keeps copies of dictionaries, lists and arrays."""
+    """Make the constructor of a class :func:`strict`; it keeps copies of dictionaries, lists and arrays.
+
+    Where the constructor fails on arguments whose annotations do not say for sure what they may be, it says so.
+    """
     made: Any = cls.__init__
+    expected = _Expected.of(made, method_of=cls.__name__)
 
     @functools.wraps(made)
     def keeping(self: object, *args: object, **kwargs: object) -> None:
-        made(self, *map(_own, args), **{name: _own(value) for name, value in kwargs.items()})
+        try:
+            made(self, *map(_own, args), **{name: _own(value) for name, value in kwargs.items()})
+        except ConcioError:
+            raise
+        except (TypeError, ValueError, AttributeError) as error:
+            expected.refuse(expected.doubtful((self, *args), kwargs), error)
+            raise
 
-    type.__setattr__(cls, "__init__", _strict(keeping, _Expected.of(made, method_of=cls.__name__)))
+    type.__setattr__(cls, "__init__", _strict(keeping, expected))
     return cls
 
 
@@ -115,7 +125,13 @@ def _strict(function: Callable[P, T], expected: _Expected) -> Callable[P, T]:
     @functools.wraps(function)
     def run(*args: P.args, **kwargs: P.kwargs) -> T:
         expected.check(args, kwargs)
-        return function(*args, **kwargs)
+        try:
+            return function(*args, **kwargs)
+        except ConcioError:
+            raise
+        except (TypeError, ValueError) as error:
+            expected.refuse(expected.texts_for_numbers(args, kwargs), error)
+            raise
 
     return run
 
@@ -161,6 +177,35 @@ class _Expected:
         defaults = {p.name: p.default for p in named}
         known = (*defaults, *also)
         return cls(method_of or function.__name__, order, types, defaults, known, needed, more, own, any_number)
+
+    def texts_for_numbers(self, by_place: Sequence[object], named: Mapping[str, object]) -> dict[str, object]:
+        """Return the arguments that are texts where numbers are due: some functions read numbers with their units."""
+        given = {**dict(zip(self.order, by_place[self.own :], strict=False)), **named}
+        return {
+            name: value for name, value in given.items()
+            if isinstance(value, str) and name in self.types and "a number" in self.types[name][1]
+        }  # fmt: skip
+
+    def doubtful(self, by_place: Sequence[object], named: Mapping[str, object]) -> dict[str, object]:
+        """Return these, or else arrays and what was not checked, as its annotation does not say for sure what it is."""
+        given = {**dict(zip(self.order, by_place[self.own :], strict=False)), **named}
+        return self.texts_for_numbers(by_place, named) or {
+            name: value for name, value in given.items()
+            if value is not self.defaults.get(name) and (name not in self.types or isinstance(value, np.ndarray))
+        }  # fmt: skip
+
+    def refuse(self, found: Mapping[str, object], error: Exception) -> None:
+        """Raise where arguments were found that explain an error.
+
+        Raises
+        ------
+        ArgumentError
+            With their values.
+        """
+        if found:
+            said = " or ".join(f"{name} = {told(value)}" for name, value in found.items())
+            msg = f"{self.name}(): {said} cannot be used: {error}"
+            raise ArgumentError(msg) from error
 
     def check(self, by_place: Sequence[object], named: Mapping[str, object]) -> None:
         """Raise where a call with arguments by place and others by name is not one the function takes."""

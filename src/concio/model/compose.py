@@ -17,7 +17,7 @@ import numpy as np
 from concio.arguments import closest, strict
 from concio.errors import InputError
 from concio.kinematics.rigid import plane_rotation, rotation_matrix
-from concio.model.model import Body, Load, Model, Point, Support, Tie, called
+from concio.model.model import Body, Load, Model, Point, Support, Tie, called, require_model
 from concio.model.polyhedron import Polyhedron
 from concio.model.rules import fits
 from concio.model.stages import Stage
@@ -78,6 +78,7 @@ def place(
     30.0 SOLVED
     31.0 NO_EQUILIBRIUM
     """
+    require_model(model)
     matrix, shift = _motion(model, at, turn, axis, mirror)
     if loads not in ("body", "world"):
         msg = f"loads = {loads!r} is not 'body' or 'world'"

@@ -6,6 +6,7 @@ import inspect
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
 import pytest
 
 import concio
@@ -200,3 +201,75 @@ def test_arguments_of_the_wrong_kind_are_told_in_words(case: str) -> None:
     call, said = WRONG_KINDS[case]
     with pytest.raises(concio.InputError, match=said):
         call(concio.loads(COLUMN))
+
+
+SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+BOX = concio.Polyhedron.box("b", (0, 0, 0), (1, 1, 1))
+MADE: dict[str, dict[str, Any]] = {
+    "Axle": {"at": 0.0, "load": 10.0},
+    "Body": {"name": "a", "outline": SQUARE},
+    "Candidate": {"name": "c", "body": "a", "direction": (0.0, -1.0)},
+    "ControlPoint": {"body": "a", "at": (0.0, 0.0)},
+    "Elastic": {"E": 1e6, "nu": 0.2, "unit_weight": 20.0},
+    "Fill": {"cover": 0.3},
+    "JointLaw": {"friction": 0.5},
+    "JointRule": {"law": "j"},
+    "Layer": {"depth": 0.1, "unit_weight": 20.0},
+    "Load": {"kind": "point", "value": (0.0, -1.0), "bodies": ("a",), "at": (0.5, 1.0)},
+    "Measurement": {"name": "m", "kind": "opening", "error": 0.001, "joint": ("a", "b"), "at": (0.0, 0.0)},
+    "Polyhedron": {"name": "a", "vertices": BOX.vertices, "faces": BOX.faces},
+    "Pulse": {"shape": "sine", "amplitude": 1.0, "length": 0.5},
+    "Record": {"values": np.full(10, 0.1), "step": 0.01},
+    "Rigid": {"unit_weight": 20.0},
+    "Site": {"hazard": {"SLV": {"a_g": 0.2, "F0": 2.45, "Tc": 0.32}}},
+    "Stage": {"name": "s", "factors": {"dead": 1.0}},
+    "Support": {"name": "s", "body": "a", "edge": ((0, 0), (1, 0))},
+    "Temperature": {"change": 10.0},
+    "Tie": {"name": "t", "body_a": "a", "at_a": (0.5, 0.5), "body_b": "", "at_b": (3.0, 0.5), "stiffness": 100.0},
+    "Units": {},
+    "Variable": {"name": "v", "distribution": "normal", "keys": ("friction",), "parameters": {"mean": 1.0, "sd": 0.1}},
+    "Vehicle": {"name": "v", "axles": ((0.0, 10.0),)},
+}
+ANYTHING = (
+    None, 5, -1.0, "x", "", [], {}, object(), float("nan"), float("inf"), np.array([1.0, 2.0]), True, [None], ["x"],
+    {"x": 1}, (1, 2, 3, 4), b"x", 1e308, len,
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("name", sorted(MADE))
+def test_whatever_is_given_is_taken_or_refused_in_a_sentence(name: str) -> None:
+    """Each argument in turn is nothing, a number, a text, a list, an object, a function: never a traceback."""
+    made = getattr(concio, name)
+    made(**MADE[name])
+    for argument in all_arguments(made):
+        for value in ANYTHING:
+            try:
+                made(**{**MADE[name], argument: value})
+            except concio.ConcioError as error:
+                assert str(error).strip()
+
+
+def test_a_text_for_a_number_is_named() -> None:
+    """Some functions read numbers with their units, others do not; what goes wrong inside for another reason stays."""
+    model = stack(1)
+    with pytest.raises(ArgumentError, match=r"dynamics\(\): duration = '10 s' cannot be used"):
+        concio.dynamics(model, duration="10 s")  # type: ignore[arg-type]
+    with pytest.raises(ArgumentError, match=r"Site\(\): nominal_life = '50' cannot be used"):
+        concio.Site({"SLV": {"a_g": 0.2}}, nominal_life="50")  # type: ignore[arg-type]
+
+    @strict
+    def broken(name: str, size: float = 1.0) -> float:
+        raise TypeError(name)
+
+    with pytest.raises(TypeError, match=r"^within$"):
+        broken("within", 2.0)
+    with pytest.raises(ArgumentError, match=r"size = '2 m' cannot be used: within"):
+        broken("within", "2 m")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("bond", [None, 5, [None], (1, 2), True])
+def test_what_is_no_bond_is_told(bond: Any) -> None:
+    with pytest.raises(concio.InputError, match="neither the name of a bond nor a list of courses"):
+        concio.wall(length=1.0, height=0.5, bond=bond)
+    with pytest.raises(concio.InputError, match="a model is needed"):
+        concio.place(bond)

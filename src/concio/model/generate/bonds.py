@@ -65,6 +65,10 @@ class Course:
             raise InputError(msg, where="bond", hint="give it in block heights")
 
 
+def _is_list(value: object) -> bool:
+    return isinstance(value, Sequence | np.ndarray) and not isinstance(value, str | bytes)
+
+
 def bond_courses(bond: str | Sequence[Course | Sequence[float]], lap: float = 0.5) -> tuple[Course, ...]:
     """Return the courses that repeat, from below.
 
@@ -82,6 +86,9 @@ def bond_courses(bond: str | Sequence[Course | Sequence[float]], lap: float = 0.
         Unknown bond, or a lap out of range.
     """
     if not isinstance(bond, str):
+        if not (_is_list(bond) and all(isinstance(c, Course) or _is_list(c) for c in bond)):
+            msg = f"{bond!r} is neither the name of a bond nor a list of courses"
+            raise InputError(msg, where="bond", hint="'running', or [(0.5, 1.0), (1.0,)] in block lengths")
         courses = tuple(c if isinstance(c, Course) else Course(tuple(c)) for c in bond)
         if not courses:
             msg = "the bond has no courses"
