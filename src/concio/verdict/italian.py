@@ -25,6 +25,13 @@ INSIDE = r"(?:(?!\. ).)+?"
 NARROW = {"n": r"[+-]?(?:\d[\d.,]*(?:e[+-]?\d+)?|–)(?: [^\s,;:()]+(?: m)?)?", "a": r"[xyz]", "w": r"[^\s.,;:]+"}
 """What gaps of numbers with their unit and of axes may hold."""
 QUOTED = re.compile(r"(?<!\w)'[^']*'(?!\w)")
+KINDS = {"gap": "distacco", "angle": "angolo", "sliver": "tratto troppo corto", "partial": "solo in parte",
+         "corner": "spigolo", "edge": "bordo"}  # fmt: skip
+"""Kinds of places where a joint was not made."""
+MEET = {"face": "faccia", "edge": "bordo", "corner": "spigolo"}
+"""What meets in a contact without area."""
+KINDS |= {f"{a}-{b}": f"{MEET[a]}-{MEET[b]}" for a in MEET for b in MEET}
+PLACE = re.compile(rf"' at \(([^()]*)\) m \(({'|'.join(KINDS)})\)")
 LEFT = re.compile(r"\b(the|from|over|of|with|which|that|and|is|are)\b")
 """English that no list in Italian has: the list is not known."""
 NUMBER = re.compile(r"\d+(?:[.,]\d+)*")
@@ -168,6 +175,9 @@ def _words(text: str, table: Mapping[str, str]) -> str:
         r"\bfrom (\S+) to (\S+ \S+) over the runs, in the first of them\b",
         r"da \1 a \2 nei calcoli, nel primo di essi", said,
     )  # fmt: skip
+    said = PLACE.sub(lambda place: f"' in ({place[1]}) m ({KINDS[place[2]]})", said)
+    said = re.sub(r"\b([\d,]+) (gap|angle|sliver|partial|corner|edge)\b", lambda m: f"{KINDS[m[2]]}: {m[1]}", said)
+    said = re.sub(r"\) (?:and|e) ([\d,]+) more\b", r") e altri \1", said)
     said = re.sub(r"\b(\d+) supports? moved\b", r"vincoli spostati: \1", said)
     said = re.sub(r"\bin forces that balance\b", "in forze che si equilibrano", said)
     said = re.sub(r"\babout ([xyz])\b", r"attorno a \1", said)

@@ -12,11 +12,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import concio
+from concio import Body, JointLaw, Model, Rigid
 from concio.analysis.path import _finite_steps
+from concio.contact.detection import Detection, detect
 from concio.problem.solution import Status
 from concio.report.italian_page import told_pieces
 from concio.solvers.path.record import Event, Outcome
 from concio.verdict import dynamics_verdict, path_verdict, push_verdict
+from concio.verdict.attention import joints_not_made, without_area
 from concio.verdict.italian import GAP, NUMBER, in_italian, italian
 from concio.verdict.step_words import WORDS
 
@@ -123,3 +126,25 @@ def test_notes_of_finite_steps_and_of_stages_that_ended_are_known(kind: str, cou
     notes += [f"stage 'wind' ended at 0.25 of its load. {end.value}" for end in Outcome]
     assert len(notes) == 1 + len(Outcome)
     assert [note for note in notes if {p.language for p in italian(note)} != {"it"}] == []
+
+
+def test_places_without_a_joint_are_said_in_one_language() -> None:
+    """Five blocks over the ground and one on its tip: kinds, places, and how many more."""
+    outlines = [[(2 * k, 3e-3), (2 * k + 1, 3e-3), (2 * k + 1, 1), (2 * k, 1)] for k in range(5)]
+    rows = [Body(f"a{k}", outline, kind="rigid") for k, outline in enumerate(outlines)]
+    rows += [Body("tip", [(12, 0), (12.5, 1), (11.5, 1)], kind="rigid")]
+    ground = Body("ground", [(-1, -1), (20, -1), (20, 0), (-1, 0)], kind="fixed")
+    for strength in (None, 1e3):
+        law = JointLaw(0.6, compressive_strength=strength)
+        model = Model((ground, *rows), {"block": Rigid(20.0)}, {"joint": law})
+        said_of(detect(model), model)
+
+
+def said_of(found: Detection, model: Model) -> None:
+    """Check every sentence on places of a detection."""
+    lines = (*joints_not_made(found), *without_area(model, found))
+    assert len(lines) == len(found.point_contacts) + 1
+    for line in lines:
+        (said,) = italian(line)
+        assert said.language == "it", line
+        assert not re.search(r"\b(and|at|more|gap|corner|edge|partial|sliver|angle)\b", said.text), said.text
