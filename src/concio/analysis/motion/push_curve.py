@@ -102,6 +102,7 @@ class PushCurve:
         """Keep a point; tell where the first one is unstable."""
         if found.unstable and UNSTABLE not in self.notes:
             self.notes.append(UNSTABLE)
+        self.statics.go_back(found)
         rows = self.observer.rows(found.state)
         if self.states:
             self.events += joint_events(
@@ -210,6 +211,7 @@ class PushCurve:
 
     def _insert(self, found: Balanced, displacement: float, at: int) -> None:
         """Put a point between others."""
+        self.statics.go_back(found)
         rows = self.observer.rows(found.state)
         reaction = self.observer.reactions(found.force, found.pairs, rows.frame)
         kept: tuple[tuple[list[Any], Any], ...] = (

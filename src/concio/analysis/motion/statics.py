@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -92,6 +93,8 @@ class Balanced:
     iterations : int
     unstable : bool
         Whether what is off the equilibrium grows away from it, though its displacement is controlled.
+    layout : optional
+        Of the contact pairs.
     """
 
     state: MotionState
@@ -103,6 +106,7 @@ class Balanced:
     pairs: int
     iterations: int
     unstable: bool = False
+    layout: Any = None
 
 
 class Statics(SmallDisplacements):
@@ -138,6 +142,13 @@ class Statics(SmallDisplacements):
         half = 0.5 * turned_from(before.rotation, found.state.rotation)
         turn = before.placement.moved(np.zeros_like(before.centre), half).turns
         return float(self.mean(self.unit(turn)) @ found.moved)
+
+    def go_back(self, found: Balanced) -> None:
+        """Take the layout of pairs in which an equilibrium was found: other ones may have been tried since."""
+        search = self.maker.search
+        if search.layout is not found.layout:
+            search.layout = found.layout
+            self.solver.new_layout()
 
     def balance(
         self, state: MotionState, multiplier: float, *, target: float | None = None, most: int = MOST,
@@ -274,7 +285,8 @@ class Statics(SmallDisplacements):
         else:
             residual, memory, tied = np.inf, look.memory, state.ties
         placed = replace(state, memory=memory, ties=tied)
-        return Balanced(placed, multiplier, residual, residual <= CERTIFIED, moved, found.t, m, count)
+        good, layout = residual <= CERTIFIED, self.maker.search.layout
+        return Balanced(placed, multiplier, residual, good, moved, found.t, m, count, layout=layout)
 
 
 def _guess(p: StepProblem, memory: Memory, last: StepSolution | None) -> tuple[PairStates, Array]:
