@@ -18,6 +18,9 @@ STRONG = 0.5
 ROUNDED = 0.01
 """Share by which a return period may be rounded: 475 years stand for 474.6."""
 
+TALLEST = 100.0
+"""Height of a building of masonry beyond which its unit is in doubt [m]."""
+
 NEAR = 1e-9
 """Relative difference below which two shares of the mass are one."""
 
@@ -57,4 +60,16 @@ def assessment_notes(
     largest = max((m.chain.e_star for m in found.mechanisms), default=0.0)
     if share is not None and share < largest * (1 - NEAR):
         lines.append(say("note_participation", given=float(share), own=largest))
-    return tuple(lines)
+    return (*lines, *(say(key, **values) for key, values in _buildings(found)))
+
+
+def _buildings(found: Assessment) -> list[tuple[str, dict[str, float]]]:
+    """Return what is implausible about the height of a regular building, with the numbers of each sentence."""
+    told: list[tuple[str, dict[str, float]]] = []
+    highest = max((float(m.level) for m in (*found.mechanisms, *found.others)), default=-math.inf)
+    for one in found.site.building:
+        height = float(getattr(one, "height", 0.0))
+        top = height + float(getattr(one, "base", 0.0))
+        told += [("building_tall", {"height": height})] if height > TALLEST else []
+        told += [("building_low", {"top": top, "z": highest})] if height and highest > top * (1 + NEAR) else []
+    return told

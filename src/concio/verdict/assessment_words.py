@@ -78,6 +78,10 @@ EN = {
     "elsewhere_out of plane": "the facade out of its plane",
     "elsewhere_height": "amplification at height",
     "elsewhere_ties": "ties without yield force",
+    "building_tall": "[site.building] has a height of {height} m, more than any masonry building: is it in m? The "
+    "taller the building, the less is amplified at a height",
+    "building_low": "[site.building] ends at {top} m, and mechanisms start above it, up to z = {z} m: is its height "
+    "that of the whole building, in m?",
     "open_levels": "{levels}: no hazard is given (or say which limit states are asked for)",
     "open_hazard": "{numbers} of {level} were not given: the spectrum uses default values that belong to no site",
     "open_height": "the amplification at height of {names}: give [site.building]",
@@ -204,6 +208,10 @@ IT = {
     "elsewhere_out of plane": "la facciata fuori dal suo piano",
     "elsewhere_height": "l'amplificazione in quota",
     "elsewhere_ties": "le catene senza forza di snervamento",
+    "building_tall": "[site.building] ha un'altezza di {height} m, più di ogni edificio in muratura: è in m? Più "
+    "alto è l'edificio, meno si amplifica a una quota",
+    "building_low": "[site.building] finisce a {top} m, e alcuni meccanismi partono più in alto, fino a z = {z} m: la "
+    "sua altezza è quella di tutto l'edificio, in m?",
     "open_levels": "{levels}: pericolosità non data (oppure indicare quali stati limite sono richiesti)",
     "open_hazard": "{numbers} dello {level} non dati: lo spettro usa valori predefiniti, non riferiti a un sito",
     "open_height": "l'amplificazione in quota di {names}: indicare [site.building]",

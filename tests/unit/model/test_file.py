@@ -314,6 +314,10 @@ WRONG = {
     "unknown key of a material": ("[materials.a]\ne = 1\n[panel]", "unknown key 'e' (did you mean 'E'?)"),
     "unknown key of a joint": ("[joints.a]\nfricton = 1\n[panel]", "unknown key 'fricton' (did you mean 'friction'?)"),
     "unknown key of a friction": ("[panel.friction]\nfriction = 1\nfoo = 1", "[panel.friction]: unknown key 'foo'"),
+    "unknown key of a hazard": (
+        "[panel]\n[site.hazard.SLV]\na_g = 0.2\nFo = 2.4", "[site.hazard.SLV]: unknown key 'Fo' (known: a_g, F0, Tc"),
+    "unknown key of a row of hazards": (
+        "[panel]\n[[site.hazard]]\na_g = 0.2\nFo = 2.4", "[[site.hazard]] 1: unknown key 'Fo' (known: a_g, F0, Tc"),
     "negative modulus": ("[panel]\nblock.E = -1", "[panel.block]: Young's modulus E = -1 must be positive"),
     "zero modulus": ("[panel]\nblock.E = 0", "[panel.block]: Young's modulus E = 0 must be positive"),
     "incompressible": ("[panel]\nblock = { E = 1e5, nu = 0.5 }", "[panel.block]: Poisson's ratio nu = 0.5"),

@@ -24,7 +24,7 @@ from concio.contact.applied import sideways
 from concio.display import number
 from concio.errors import InputError, NoEquilibriumError
 from concio.report.assessment_page import AssessmentReport
-from concio.verdict.assessment_verdict import _gap, grounds
+from concio.verdict.assessment_verdict import _gap, assessment_verdict, grounds
 from concio.verdict.assessment_words import EN, IT
 from concio.verdict.verdict import Outcome
 from samples import sample
@@ -288,6 +288,16 @@ def test_a_parapet_is_not_verified_on_the_ground() -> None:
     assert "<th>assunto</th><td>spessore 1 m, valore predefinito" in page
     with pytest.raises(InputError, match="no check that is made elsewhere 'heights'"):
         assessed(parapet(), elsewhere=["heights"])
+
+
+@pytest.mark.parametrize(("height", "words"), [(9000.0, "altezza di 9000 m"), (6.0, "finisce a 6 m"), (12.0, "")])
+def test_a_height_of_a_building_that_is_no_height_asks_for_attention(height: float, words: str) -> None:
+    """Millimetres for metres would take away the amplification at the height of 9 m; 6 m lie below the mechanism."""
+    for language in ("en", "it"):
+        found = assessed(parapet(), site=site(hazard=QUIET, building={"height": height, "storeys": 3}))
+        told = [x for x in assessment_verdict(found, language).attention if "[site.building]" in x]
+        assert len(told) == bool(words)
+        assert not words or (words in told[0]) == (language == "it")
 
 
 @pytest.mark.long  # test_out_of_plane

@@ -111,8 +111,14 @@ def _short(value: Any) -> str:
 
 
 def _most_telling(faults: Sequence[Any]) -> Any:
-    """Return the fault to report: an unknown key before the one that its misspelling leaves missing."""
+    """Return the fault to report: an unknown key before the one that its misspelling leaves missing.
+
+    A list that may be a table or a list of tables is at fault where its entries are, not for being no table.
+    """
     first = faults[0]
+    if first["type"] == "dict_type" and isinstance(first["input"], list):
+        inside = [f for f in faults if len(f["loc"]) > len(first["loc"]) and f["loc"][:-1] != first["loc"][:-1]]
+        return _most_telling(inside) if inside else first
     if first["type"] == "missing":
         table = first["loc"][:-1]
         return next((f for f in faults if f["type"] == "extra_forbidden" and f["loc"][:-1] == table), first)
@@ -124,15 +130,21 @@ def known_keys(root: type[BaseModel], location: Location) -> list[str]:
     table: Any = root
     for part in location:
         if isinstance(part, int):  # an entry of a list
+            table = next(_models_in(table), None) if get_origin(table) is dict else table
             continue
         if get_origin(table) is dict:  # a name of the file's own
             table = get_args(table)[1]
         elif table is not None:
             member = table.model_fields.get(part)
-            table = None if member is None else member.annotation
+            table = None if member is None else _by_name(member.annotation)
         if get_origin(table) is not dict:
             table = next(_models_in(table), None)
     return [] if table is None or get_origin(table) is dict else list(table.model_fields)
+
+
+def _by_name(annotation: Any) -> Any:
+    """Return the tables by name among the alternatives of an annotation; without any, the annotation."""
+    return next((one for one in get_args(annotation) if get_origin(one) is dict), annotation)
 
 
 def _models_in(annotation: Any) -> Iterator[type[BaseModel]]:
