@@ -220,6 +220,9 @@ def points_held(disc: Discretisation, b: int, number: int) -> tuple[Array, Array
             msg = f"no node of '{support.body}' lies on {text}"
             raise InputError(msg, where=where, hint="give a segment or a polygon on the surface of the block")
     points = points[chosen]
+    if len(points) == 1 and np.any(support.rotation):
+        msg = f"one point of '{support.body}' is held: a rotation imposed there does not turn the body"
+        raise InputError(msg, where=where, hint="hold a segment or the whole body, or give the point a displacement")
     motion = np.array([_moved(support, point, disc.centroids[b]) for point in points])
     return chosen, points, motion, axes
 

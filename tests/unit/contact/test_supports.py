@@ -241,3 +241,22 @@ def test_movements_in_texts_are_those_in_metres_and_radians() -> None:
     assert space.rotation == pytest.approx((np.deg2rad(1.0), 0.0, 0.02))
     with pytest.raises(InputError, match="is not a length"):
         concio.Support("s", "b", displacement=("1 kN", 0.0))
+
+
+@pytest.mark.parametrize("kind", ["rigid", "elastic"])
+def test_a_support_at_one_point_turns_nothing(kind: str) -> None:
+    """A segment of a rigid body turns it by what it says; one point cannot."""
+    block = concio.Body("b", np.array([[0, 0], [2, 0], [2, 1], [0, 1.0]]), kind=kind)
+
+    def held(*edge: tuple[float, float]) -> concio.Model:
+        support = Support("s", "b", edge=edge, rotation=1e-3)
+        materials = {"block": concio.Rigid(20.0) if kind == "rigid" else concio.Elastic(E=1e6, unit_weight=20.0)}
+        return concio.Model((block,), materials, {"joint": concio.JointLaw(0.5)}, supports=(support,),
+                            loads=(concio.Load("weight", (0.0, -1.0)),))  # fmt: skip
+
+    with pytest.raises(concio.InputError, match="does not turn the body"):
+        concio.solve(held((0.0, 0.0), (0.0, 0.0)))
+    if kind == "rigid":
+        turned = concio.solve(held((0.0, 0.0), (2.0, 0.0)))
+        ends = turned.node_displacement("b")
+        assert ends[1, 1] - ends[0, 1] == pytest.approx(2e-3, rel=1e-9)
