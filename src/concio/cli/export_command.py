@@ -45,7 +45,8 @@ def export(
 ) -> int:
     """Write a result for ParaView (vtu), spreadsheets (csv), drawing programs (dxf), or its model (toml).
 
-    In space also obj, stl, glb (glTF), json (COMPAS) and 3dm: the displaced blocks.
+    In space also obj, stl, glb (glTF), json (COMPAS) and 3dm. A dxf, obj, stl, glb or 3dm file holds the displaced
+    blocks alone: no loads, supports or ties; --results adds joints, forces and ties to a plane drawing.
 
     Numbers are in kN and m, whatever the units of the model file; a drawing has the unit of --unit.
 
