@@ -33,6 +33,7 @@ def check(
     Example: concio check wall.toml --out wall.png
     """
     import concio
+    from concio.analysis.seismic.assessment_asked import check_site
     from concio.cli.check_lines import check_facts, check_lines
     from concio.contact.assembly import assemble
     from concio.contact.detection import detect
@@ -64,6 +65,8 @@ def check(
             say(f"picture      {out}")
     if fault is not None:
         raise fault
+    if str(file) != "-":  # standard input is read once
+        check_site(file)
     if json:
         print_json({"status": "ok", **check_facts(model, detection), **facts})
     return 0

@@ -421,6 +421,25 @@ def test_the_command_ends_with_the_exit_code_of_the_verdict(tmp_path: Path) -> N
         assert lines.splitlines()[3].strip().startswith("acts")
 
 
+@pytest.mark.parametrize(
+    ("was", "comes", "said"),
+    [
+        ("a_g = 0.15", "a_g = 2.6", "a_g = 2.6 g is not an acceleration"),
+        ('soil = "B"', 'soil = "F"', "no soil 'F'"),
+        ("", "", ""),
+    ],
+)
+def test_a_fault_of_a_site_is_found_by_check(was: str, comes: str, said: str, tmp_path: Path) -> None:
+    path = tmp_path / "site.toml"
+    assert was in PARAPET
+    path.write_text(PARAPET.replace(was, comes), encoding="utf-8")
+    code, out, err = run("check", path)
+    assert code == (2 if said else 0)
+    assert said in err
+    assert "joint law" in out
+    assert run("assess", path)[2] == err if said else not err
+
+
 def test_a_gap_is_never_told_smaller_than_rounding() -> None:
     assert [_gap(gap) for gap in (3.2e-7, 1e-16, 9e-17, 0.0, -1e-18)] == ["3e-07", "1e-16", *["< 1e-16"] * 3]
 

@@ -104,15 +104,34 @@ def read_asked(path: str | os.PathLike[str]) -> Asked:
     anchors = tuple(Anchor(**a.model_dump(exclude_unset=True)) for a in asked.anchors)
     for k, anchor in enumerate(anchors, 1):
         anchor.check(model, f"{name}, [[assessment.anchors]] {k}")
-    try:
-        place = _site(site, path.parent)
-    except InputError as error:
-        where = ", ".join(filter(None, (f"{name}, [site]", error.where)))
-        raise InputError(error.what, where=where, hint=error.hint) from None
     return Asked(
-        model, _arguments(asked, place), asked.size_tie, asked.largest_tie, asked.sensitivity, anchors,
+        model, _arguments(asked, _placed(site, path)), asked.size_tie, asked.largest_tie, asked.sensitivity, anchors,
         _strengthen(asked.strengthen), Head(**asked.report.model_dump(), reasons=asked.reasons),
     )  # fmt: skip
+
+
+def check_site(path: str | os.PathLike[str]) -> None:
+    """Check the tables ``[site]`` and ``[assessment]`` of a file that has them, without assessing anything.
+
+    Raises
+    ------
+    InputError
+        As :func:`read_asked`.
+    """
+    path = Path(path)
+    data = read_tables(path)
+    site, _ = assessment_tables(data, file_units(data, str(path)), str(path))
+    if site is not None:
+        _placed(site, path)
+
+
+def _placed(table: SiteTable, path: Path) -> Site:
+    """Return the site of a file; its faults name the table."""
+    try:
+        return _site(table, path.parent)
+    except InputError as error:
+        where = ", ".join(filter(None, (f"{path}, [site]", error.where)))
+        raise InputError(error.what, where=where, hint=error.hint) from None
 
 
 ASSUMED = ("soil", "topography", "nominal_life", "use_class")
