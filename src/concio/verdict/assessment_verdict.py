@@ -285,6 +285,10 @@ class _Words:
             limits.append(self.say("corner", name=self.name(m.name), level=o.level, zeta=o.zeta,
                                    ratio=o.check.ratio) + more)  # fmt: skip
         limits += [
+            self.say("tie_limit", name=self.name(m.name), level=level)
+            for m in found.mechanisms[:MOST_NAMES] for level, limit in m.limits.items() if limit.why == "ties"
+        ]  # fmt: skip
+        limits += [
             self.say("cut", name=self.name(m.name), way=self.way(m.direction), d=float(m.followed.end),
                      reason=self.reason(m.followed.reason))
             for m in found.mechanisms[:MOST_NAMES] if m.followed.ends and m.followed.reason != "falls"

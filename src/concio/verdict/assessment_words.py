@@ -63,6 +63,8 @@ EN = {
     "excluded",
     "brittle": "tie '{tie}' breaks before it yields: its force at break, {force} kN, is used instead of its yield "
     "force",
+    "tie_limit": "'{name}', {level}: its limit of displacement is where ties have broken and alpha is below half "
+    "of its largest, as the code asks; with ties that break later, or without them, zeta_E may be larger",
     "corner": "'{name}', {level}: zeta_E = {zeta} is a ratio of accelerations, capacity over demand in "
     "displacements is {ratio}: as a_g is scaled the corner periods move with it, so that the displacement demanded "
     "does not grow like a_g",
@@ -191,6 +193,9 @@ IT = {
     "sono escluse",
     "brittle": "la catena «{tie}» si rompe prima di snervarsi: si considera la forza alla rottura, {force} kN, non "
     "quella di snervamento",
+    "tie_limit": "«{name}», {level}: il limite di spostamento è quello in cui le catene sono rotte e alpha è sotto la "
+    "metà del suo massimo, come chiede la norma; con catene che si rompono più tardi, o senza, zeta_E può essere "
+    "maggiore",
     "corner": "«{name}», {level}: zeta_E = {zeta} è un rapporto di accelerazioni, capacità su domanda in "
     "spostamento vale {ratio}: scalando a_g si spostano i periodi dello spettro, e lo spostamento richiesto non "
     "cresce come a_g",

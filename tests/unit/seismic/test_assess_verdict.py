@@ -489,3 +489,16 @@ def test_a_type_of_spectrum_that_a_code_has_not_is_refused(kind: str) -> None:
     with pytest.raises(concio.InputError, match="has no types of spectra"):
         concio.Site(hazard={"SLV": {"a_g": 0.05}}, spectrum_type=kind)
     assert concio.Site(hazard={"SLV": {"a_g": 0.05}}, code="en1998", spectrum_type="2").spectrum_type == "2"
+
+
+@pytest.mark.parametrize(("breaks", "limited"), [(None, False), (0.04, True)])
+def test_where_a_broken_tie_sets_the_limit_it_is_told(breaks: float | None, limited: bool) -> None:
+    """A tie that breaks early makes zeta_E less than that of the wall without it, as the code counts."""
+    tie = concio.Tie("tie", "c1", (0.0, 5.5), "", (5.0, 5.5), stiffness=5e3, yield_force=10.0, break_elongation=breaks)
+    bare, tied = (concio.assess(overturning(ties=ties), site=site(), direction="left", levels=["SLV"])
+                  for ties in ((), (tie,)))  # fmt: skip
+    assert (tied.zeta < bare.zeta) == limited
+    for language, said in (("en", "ties have broken"), ("it", "catene sono rotte")):
+        lines = assessment_verdict(tied, language).limits
+        assert any(said in line for line in lines) == limited
+    assert not any("ties have broken" in line for line in bare.verdict.limits)
