@@ -213,7 +213,7 @@ def check(data: Data) -> str:
         check_forces(data, data["forces"], constant)
         return f"forces {points} balance {acting}: proved exactly"
     if data["claim"] != "limit":
-        raise ValueError(f"the claim {data['claim']!r} is not for this program")
+        raise ValueError(f"the claim {data['claim']!r} is not for this program (verify_equilibrium.py: 'equilibrium')")
     found = []
     if "forces" in data:
         lower = exact(data["lower"])

@@ -262,7 +262,7 @@ def check(data: Data) -> str:
     if hashlib.sha256(plain.encode("ascii")).hexdigest() != data["digest"]:
         raise ValueError("the file was changed after it was written: its digest is another")
     if data["claim"] != "equilibrium":
-        raise ValueError(f"the claim {data['claim']!r} is not for this program")
+        raise ValueError(f"the claim {data['claim']!r} is not for this program (verify.py: all but 'equilibrium')")
     rows, right, signs = system(data)
     x = solution(data, rows, right)
     for condition in signs:
