@@ -114,28 +114,32 @@ def not_followed(reason: str) -> CapacityCurve:
     return CapacityCurve("followed", np.zeros(1), np.zeros(1), float("nan"), reason)
 
 
-def follow(linkage: Linkage) -> CapacityCurve:
+def follow(linkage: Linkage, start: Array | None = None, d0: float = 0.0) -> CapacityCurve:
     """Follow a mechanism with one degree of freedom until its multiplier vanishes.
 
     Parameters
     ----------
     linkage : Linkage
+    start : (G, 3) array, optional
+        Configuration in which the curve begins; that at rest by default.
+    d0 : float
+        Displacement of the control point there [m].
 
     Returns
     -------
     CapacityCurve
         Of points as equilibrium gives them; where it ends early, its reason says why.
     """
-    rest = np.zeros((len(linkage.mechanics.blocks), 3))
-    first = linkage.balance(rest)
-    if linkage.freedom != 1 or first is None:
-        n = linkage.freedom
+    begins = np.zeros((len(linkage.mechanics.blocks), 3)) if start is None else start
+    n = linkage.freedom if start is None else linkage.freedom_at(start)
+    first = linkage.balance(begins) if n == 1 else None
+    if first is None:
         return not_followed("several motions" if n != 1 else "no forces")
-    points, d = [first], [0.0]
-    step = _first_step(linkage, first)
+    points, d = [first], [d0]
+    step = _first_step(linkage, first, d0)
     reason = "far"
     end, broken = float("nan"), []
-    while d[-1] < FARTHEST * linkage.size:
+    while d[-1] - d0 < FARTHEST * linkage.size:
         q = _ahead(linkage, points[-1], step)
         moved = linkage.moved(q, d[-1] + step)
         now = None if moved is None else linkage.balance(moved)
@@ -187,10 +191,10 @@ def follow(linkage: Linkage) -> CapacityCurve:
     return CapacityCurve("followed", np.array(d), multipliers, end, reason, tuple(broken), forces, tuple(points))
 
 
-def _first_step(linkage: Linkage, first: Point) -> float:
+def _first_step(linkage: Linkage, first: Point, d0: float) -> float:
     """Return a step of which some ``STEPS`` lead to where alpha vanishes, by its slope without ties."""
     tiny = 1e-5 * linkage.size
-    moved = linkage.moved(first.q + tiny * linkage.velocity(first.q).reshape(-1, 3), tiny)
+    moved = linkage.moved(first.q + tiny * linkage.velocity(first.q).reshape(-1, 3), d0 + tiny)
     after = None if moved is None else linkage.balance(moved)
     begin, then = first.multiplier, 0.0 if after is None else after.multiplier
     fall = (begin - then) / tiny

@@ -18,6 +18,7 @@ from concio.analysis.seismic.local_mechanism import LocalMechanism
 from concio.analysis.seismic.macro_blocks import GROUND, Mechanics, carried
 from concio.analysis.seismic.macro_contacts import contacts_of
 from concio.analysis.seismic.participation import Chain, Participant, gathered
+from concio.analysis.seismic.rocking_on import followed_on
 from concio.analysis.seismic.sequence import Sequence, follow_in_steps
 from concio.analysis.seismic.site import Site
 from concio.analysis.seismic.tie_history import together
@@ -211,6 +212,8 @@ def examined(ready: Prepared, terms: Terms, element: FreeStanding | None = None)
     if followed is None:
         assert isinstance(ready.linkage, Linkage)
         followed = follow(ready.linkage)
+        if not ready.ties:
+            followed = followed_on(ready.linkage, followed)
     if all(site.rules.tables["levels"][level]["kind"] == "onset" for level in levels):
         followed = followed if followed.points else not_followed("not asked")
     elif not followed.points or followed.end < BARELY * size:

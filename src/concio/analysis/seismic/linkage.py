@@ -33,6 +33,9 @@ CLOSED = 1e-11
 LINKAGE_BALANCED = 1e-8
 """Largest residual of equilibrium over the largest force."""
 
+GRIP = 1e-4
+"""Share of its strength by which the friction of a hinge may exceed it: of a block that has slid it is all of it."""
+
 RANK = 1e-9
 """Singular values below this share of the largest are none."""
 
@@ -168,8 +171,7 @@ class Linkage:
 
     def apart(self, q: Array, joint: MacroJoint) -> Array:
         """Return the vector (2,) from the point of a joint on a to that on b [m]."""
-        end = joint.point if joint.end is None else joint.end
-        return self.between(q, joint.a, joint.point, joint.b, end)
+        return self.between(q, joint.a, joint.point, joint.b, joint.on_b)
 
     def joints(self, q: Array) -> tuple[MacroJoint, ...]:
         """Return the joints with rollers at the ends of what touches: contact goes no further than either face."""
@@ -191,7 +193,7 @@ class Linkage:
             apart = self.apart(q, joint)
             if joint.kind == "hinge":
                 values += apart.tolist()
-                rows += [*(self.rows(q, joint.b, joint.point) - self.rows(q, joint.a, joint.point))]
+                rows += [*(self.rows(q, joint.b, joint.on_b) - self.rows(q, joint.a, joint.point))]
             elif joint.kind == "roller":
                 normal = self.normal(q, joint)
                 row = self.row(q, joint.b, joint.point, normal) - self.row(q, joint.a, joint.point, normal)
@@ -234,7 +236,11 @@ class Linkage:
     @cached_property
     def freedom(self) -> int:
         """Degrees of freedom at the onset."""
-        _, J = self.conditions(np.zeros((len(self.mechanics.blocks), 3)))
+        return self.freedom_at(np.zeros((len(self.mechanics.blocks), 3)))
+
+    def freedom_at(self, q: Array) -> int:
+        """Return the degrees of freedom of a configuration (G, 3)."""
+        _, J = self.conditions(q)
         scale = np.tile([1.0, 1.0, 1.0 / self.size], len(self.mechanics.blocks))
         values = np.linalg.svd(J * scale, compute_uv=False) if len(J) else np.zeros(0)
         return self.unknowns - int((values > RANK * values.max(initial=0.0)).sum())
@@ -308,12 +314,16 @@ class Linkage:
         first: list[int] = []
         fixed = np.zeros(self.unknowns)
         pushing: list[int] = []
+        rough: list[tuple[int, float, float]] = []
         for joint in self.joints(q):
             first.append(len(columns))
             if joint.kind == "hinge":
-                for axis in (joint.normal, turned_left(joint.normal)):
-                    columns.append(self.row(q, joint.b, joint.point, axis) - self.row(q, joint.a, joint.point, axis))
+                normal = joint.normal if joint.end is None else self.normal(q, joint)
+                for axis in (normal, turned_left(normal)):
+                    columns.append(self.row(q, joint.b, joint.on_b, axis) - self.row(q, joint.a, joint.point, axis))
                 pushing += [first[-1]] if not joint.pulls else []
+                if joint.end is not None:
+                    rough.append((first[-1], joint.friction, joint.cohesion))
             elif joint.kind == "roller":
                 normal = self.normal(q, joint)
                 tangent = turned_left(normal)
@@ -348,4 +358,5 @@ class Linkage:
             for i, joint in zip(first, self.mechanics.joints, strict=True)
             if joint.kind == "bar"
         )
+        pressed = pressed and all(abs(solved[i + 1]) <= (1.0 + GRIP) * (mu * solved[i] + c) for i, mu, c in rough)
         return Point(q, float(solved[-1]), forces, longer, pressed, solved[first])

@@ -78,7 +78,7 @@ class MacroJoint:
     face : {0, 1}
         Whether the face of a roller belongs to ``a`` or to ``b``.
     end : (d,) array
-        The end of a bar on ``b`` [m].
+        The end on ``b`` of a bar, or of a hinge that begins where something has slid [m].
     low, high : float
         Where the face of a roller begins and ends, from the point along its normal turned left [m].
     friction, cohesion : float
@@ -108,6 +108,11 @@ class MacroJoint:
     set_back: float = 0.0
     strength: float = float("inf")
     inward: Array | None = None
+
+    @property
+    def on_b(self) -> Array:
+        """Its point on b, as described: that on a unless the ends differ."""
+        return self.point if self.end is None else self.end
 
     def slid(self, by: float, tolerance: float) -> MacroJoint:
         """Return a roller whose point has gone ``by`` [m] along its face: beyond its end, that end is what touches."""
