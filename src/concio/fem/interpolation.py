@@ -67,7 +67,7 @@ def _in_simplices(corners: Array, point: Array) -> Array:
 def _in_element(corners: Array, point: Array) -> Array | None:
     """Return the shape functions (c,) of a quadrilateral or hexahedron at a point; None where Newton's method fails."""
     d = corners.shape[1]
-    ends = CUBE[: len(corners), :d]
+    ends, corners = CUBE[: len(corners), :d], corners - point  # digits are lost far from the origin
     local = np.full(d, 0.5)
     for _ in range(50):
         factors = np.where(ends > 0, local, 1 - local)  # (c, d)
@@ -76,7 +76,7 @@ def _in_element(corners: Array, point: Array) -> Array | None:
         slope = corners.T @ np.where(ends > 0, others, -others)
         if abs(np.linalg.det(slope)) < np.finfo(float).tiny:
             return None
-        step = np.linalg.solve(slope, values @ corners - point)
+        step = np.linalg.solve(slope, values @ corners)
         local = local - step
         if np.abs(step).max() < ROUNDING:
             return values if values.min() > -OUTSIDE else None

@@ -108,7 +108,7 @@ def contacts_grid(result: Result) -> Grid:
     pairs = result.assembly.pairs
     m = len(pairs)
     data: dict[str, Array] = {
-        "normal": pairs.normal, "area": np.where(pairs.interface >= 0, pairs.area, np.nan),
+        "normal": pairs.normal, "area": result.contacts.area,
         "interface": pairs.interface.astype(np.int32),
         "body_a": pairs.body_a.astype(np.int32), "body_b": pairs.body_b.astype(np.int32),
     }  # fmt: skip

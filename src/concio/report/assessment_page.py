@@ -44,6 +44,8 @@ UNITS = {"weight": "-", "pressure": "kN/m2", "traction": "kN/m2", "point": "kN",
 
 BESIDE_LOADS = 30
 """The picture of a wall of more blocks has the width of the page, so that their names can be read."""
+
+
 def write_assessment_report(found: Assessment, path: Path | str, **options: Any) -> Path:
     """Write the report of an assessment as HTML, or as docx; options as :class:`AssessmentReport`."""
     path = Path(path)

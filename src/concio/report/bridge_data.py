@@ -28,8 +28,9 @@ def data_rows(page: BridgeReport) -> list[tuple[str, str]]:
 def _masonry(page: BridgeReport) -> list[tuple[str, str]]:
     """Return the rows of spans, rings, piers, width and materials."""
     model = page.found.model
-    given: Mapping[str, Any] = model.generator.get("arguments") or {}  # type: ignore[assignment]
-    spans: Sequence[float] = given.get("span") or model.generator.get("spans") or ()  # type: ignore[assignment]
+    made: Mapping[str, Any] = model.generator
+    given: Mapping[str, Any] = made.get("arguments") or {}
+    spans: Sequence[float] = given.get("span") or made.get("spans") or ()
     rows = [("spans", _lengths(page, spans))] if spans else []
     if given:
         rows.append(("shape", page.words.get("shape_" + given["shape"].replace("-", "_"), given["shape"])))

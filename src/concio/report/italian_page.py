@@ -66,13 +66,16 @@ def view_words() -> dict[str, str]:
 
 def figure_in(axes: Axes, language: Language) -> Axes:
     """Return axes whose figure has its titles, labels and legends in a language; names of blocks stay."""
+    from matplotlib.text import Text
+
     if language == "en":
         return axes
     figure = axes.get_figure(root=True)
     assert figure is not None
     for ax in figure.axes:
         legend = ax.get_legend()
-        texts = [ax.title, ax._left_title, ax.xaxis.label, ax.yaxis.label]  # type: ignore[attr-defined]
+        titles = [t for t in ax.get_children() if isinstance(t, Text) and t not in ax.texts]
+        texts = [*titles, ax.xaxis.label, ax.yaxis.label]
         texts += [t for t in ax.texts if " " in t.get_text()] + (legend.get_texts() if legend else [])
         for text in texts:
             if text.get_text():

@@ -81,7 +81,8 @@ def model_of(found: object) -> Model | None:
             if at is None:
                 break
         if at is not None:
-            return at  # type: ignore[no-any-return]
+            model: Model = at
+            return model
     return None
 
 

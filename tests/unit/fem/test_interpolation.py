@@ -50,3 +50,13 @@ def test_a_point_on_an_edge_belongs_to_its_two_nodes():
 def test_outside_there_are_no_nodes():
     nodes, _ = element(4, 0)
     assert not len(interpolated(nodes, np.arange(4)[None], np.array([3.0, 0.5]))[0])
+
+
+@pytest.mark.parametrize("far", [1e3, 1e6])
+@pytest.mark.parametrize("corners", [4, 8])
+def test_far_from_the_origin_they_are_still_those_of_the_element(corners, far):
+    nodes, point = element(corners, 2)
+    number, weights = interpolated(nodes, np.arange(corners)[None], point)
+    others, same = interpolated(nodes + far, np.arange(corners)[None], point + far)
+    assert sorted(others) == sorted(number) == list(range(corners))
+    np.testing.assert_allclose(same[np.argsort(others)], weights[np.argsort(number)], atol=1e-14 * far)

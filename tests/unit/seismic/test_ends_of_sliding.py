@@ -9,7 +9,11 @@ import pytest
 
 import concio
 from concio import Body, JointLaw, Load, Model, Rigid, Site
+from concio.analysis.seismic.curve import follow
+from concio.analysis.seismic.linkage import Linkage
 from concio.analysis.seismic.local_mechanism import LocalMechanism
+from concio.analysis.seismic.macro_blocks import GROUND, MacroJoint
+from concio.analysis.seismic.rocking_on import _rocking, followed_on
 from samples import sample
 
 SITE = Site(hazard={"SLV": {"a_g": 0.2, "F0": 2.45, "Tc": 0.32}})
@@ -181,3 +185,29 @@ def test_the_verdict_says_that_the_least_parts_were_followed_also_where_others_m
     assert len(told) == 1
     assert "the least zeta_E is reported" in told[0]
     assert "name the parts that matter" not in told[0]
+
+
+def test_supports_stay_what_they_are_and_no_part_turns_into_what_carries_it() -> None:
+    """What is held between the same two pieces is no end of the contact that opened; a point below the edge is no
+    control of a part that rocks about it: moving on it would turn the part into the wall."""
+    sizes = {"ground": (-0.3, 0.3, 0.0, 1.0), "top": (-0.3, 0.3, 1.0, 1.4)}
+    model = Model(
+        boxes(sizes), {"block": Rigid(unit_weight=20.0)}, {"joint": JointLaw(0.25)},
+        loads=(Load("weight", (0.0, -1.0)),),
+    )  # fmt: skip
+    (own,) = concio.assess(model, site=SITE, direction="right").mechanisms
+    linkage = own.linkage
+    assert isinstance(linkage, Linkage)
+    slides = follow(linkage)
+    assert slides.reason == "joint opens"
+    held = MacroJoint("roller", GROUND, 0, np.array([0.0, 1.0]), np.array([1.0, 0.0]), pulls=True)  # free to rise
+    both = (*linkage.mechanics.joints, held)
+    forces = np.append(slides.points[-1].normal_force, 1.0)
+    more = replace(linkage, mechanics=replace(linkage.mechanics, joints=both))
+    block, point, along = linkage.control
+    rocks = _rocking(more, replace(slides.points[-1], normal_force=forces))
+    assert rocks is not None
+    assert [joint.kind for joint in rocks.mechanics.joints] == ["hinge", "roller"]
+    low = replace(linkage, control=(block, point - np.array([0.0, 0.6]), along))
+    assert followed_on(low, slides) is slides
+    assert followed_on(linkage, slides).end > slides.end

@@ -134,7 +134,8 @@ def assess_bridge(
     brackets = []
     for s, one in zip(few[:worst], loaded, strict=False):
         _tell(progress, "bracket", f"x = {s.position:.3g} m")
-        brackets.append(Bracket(s, limit(one, one.vehicle.group, path=False, steps=True, search=False)))  # type: ignore[union-attr]
+        assert one.vehicle is not None, "placed"
+        brackets.append(Bracket(s, limit(one, one.vehicle.group, path=False, steps=True, search=False)))
     place = few[0].position, few[0].direction
     _tell(progress, "bridge", "without the pressure of the soil")
     soil = any(t.kind == "soil" for t in model.ties)

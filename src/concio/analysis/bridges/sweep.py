@@ -157,7 +157,8 @@ class Sweep:
         """Pieces of the road (E, 2) that uniform load covers as a whole or not [m], and the load of each (E, N)."""
         low, high = self.ground[1].over(self.ground[0])
         ends = np.linspace(low, high, max(2, int(np.ceil((high - low) / self.step()))) + 1)
-        rule = spread_rule(self.model.fill.spread)  # type: ignore[union-attr]
+        assert self.model.fill is not None, "a road lies on a fill"
+        rule = spread_rule(self.model.fill.spread)
         loads = [self._carried(spread(rule, *self.ground, tuple(along_the_road(a, b, b - a, 0.5 * (low + high)))))[0]
                  for a, b in pairwise(ends.tolist())]  # fmt: skip
         return np.column_stack([ends[:-1], ends[1:]]), np.array(loads)

@@ -56,7 +56,10 @@ def followed_on(linkage: Linkage, curve: CapacityCurve) -> CapacityCurve:
 
 
 def _rocking(linkage: Linkage, last: Point) -> Linkage | None:
-    """Return the linkage whose opened ends are gone and whose other ends are hinges; None where nothing has opened."""
+    """Return the linkage whose opened ends are gone and whose other ends are hinges.
+
+    None where nothing has opened, or where the part would turn into what it stands on.
+    """
     now = linkage.joints(last.q)
     top = float(np.abs(last.normal_force).max(initial=0.0))
     gone = [
@@ -67,11 +70,21 @@ def _rocking(linkage: Linkage, last: Point) -> Linkage | None:
     if not gone:
         return None
     joints = [
-        _hinge(linkage, last.q, joint) if joint.kind == "roller" and frozenset((joint.a, joint.b)) in between
+        _hinge(linkage, last.q, joint)
+        if joint.kind == "roller" and not joint.pulls and frozenset((joint.a, joint.b)) in between
         else linkage.mechanics.joints[k]
         for k, joint in enumerate(now) if k not in gone
     ]  # fmt: skip
-    return replace(linkage, mechanics=replace(linkage.mechanics, joints=tuple(joints)))
+    rocks = replace(linkage, mechanics=replace(linkage.mechanics, joints=tuple(joints)))
+    v = rocks.velocity(last.q)
+    return rocks if all(_opening(linkage, last.q, now[k]) @ v > 0 for k in gone) else None
+
+
+def _opening(linkage: Linkage, q: Array, joint: MacroJoint) -> Array:
+    """Return how fast a roller opens with each unknown (3 G,)."""
+    normal = linkage.normal(q, joint)
+    opening: Array = linkage.row(q, joint.b, joint.point, normal) - linkage.row(q, joint.a, joint.point, normal)
+    return opening
 
 
 def _hinge(linkage: Linkage, q: Array, joint: MacroJoint) -> MacroJoint:

@@ -21,7 +21,7 @@ from dataclasses import dataclass, fields
 from functools import cache, lru_cache
 from importlib.resources import files
 from itertools import pairwise
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -231,7 +231,7 @@ def spread_rules() -> dict[str, SpreadRule]:
     return {name: SpreadRule(name, **table) for name, table in tomllib.loads(text).items()}
 
 
-def spread_rule(given: str | Mapping[str, object]) -> SpreadRule:
+def spread_rule(given: str | Mapping[str, Any]) -> SpreadRule:
     """Return a rule by its name, or the user's own.
 
     Raises
@@ -254,5 +254,4 @@ def spread_rule(given: str | Mapping[str, object]) -> SpreadRule:
         if key not in given:
             msg = f"'{key}' is missing"
             raise InputError(msg, where="fill, spread", hint="length gained with each metre of depth, both sides")
-    arguments: dict[str, object] = {"name": "own", **given}
-    return SpreadRule(**arguments)  # type: ignore[arg-type]
+    return SpreadRule(**{"name": "own", **given})
