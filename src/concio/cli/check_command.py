@@ -32,17 +32,19 @@ def check(
 
     Example: concio check wall.toml --out wall.png
     """
-    import concio
     from concio.analysis.seismic.assessment_asked import check_site
     from concio.cli.check_lines import check_facts, check_lines
     from concio.contact.assembly import assemble
     from concio.contact.detection import detect
     from concio.errors import ConcioError
+    from concio.model.file.reading import model_of_file, read_tables
     from concio.verdict.question import resultants
 
     if out is not None:
         _check_picture(out, force=force)
-    model = in_units(concio.load(file), units)
+    path = Path(file)
+    data = read_tables(path)  # once: it may be standard input
+    model = in_units(model_of_file(data, path), units)
     detection = detect(model)
     fault: ConcioError | None = None
     facts: dict[str, Any] = {}
@@ -65,8 +67,7 @@ def check(
             say(f"picture      {out}")
     if fault is not None:
         raise fault
-    if str(file) != "-":  # standard input is read once
-        check_site(file)
+    check_site(data, path)
     if json:
         print_json({"status": "ok", **check_facts(model, detection), **facts})
     return 0

@@ -96,6 +96,9 @@ def test_a_model_comes_from_standard_input(wall: Path) -> None:
         found = CliRunner().invoke(app, ["run", "-"], input=text)
         assert found.exit_code == 2
         assert word in found.stderr
+    faulty = CliRunner().invoke(app, ["check", "-"], input=WALL + "\n[site]\nsoil = 'F'\nhazard.SLV = {a_g = 0.2}\n")
+    assert faulty.exit_code == 2
+    assert "no soil 'F'" in faulty.stderr
     found = CliRunner().invoke(app, ["study", "-"], input=WALL)
     assert found.exit_code == 2
     assert "--out" in found.stderr

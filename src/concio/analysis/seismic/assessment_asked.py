@@ -110,16 +110,14 @@ def read_asked(path: str | os.PathLike[str]) -> Asked:
     )  # fmt: skip
 
 
-def check_site(path: str | os.PathLike[str]) -> None:
-    """Check the tables ``[site]`` and ``[assessment]`` of a file that has them, without assessing anything.
+def check_site(data: dict[str, Any], path: Path) -> None:
+    """Check ``[site]`` and ``[assessment]`` among the tables of a file, where it has them, without assessing anything.
 
     Raises
     ------
     InputError
         As :func:`read_asked`.
     """
-    path = Path(path)
-    data = read_tables(path)
     site, _ = assessment_tables(data, file_units(data, str(path)), str(path))
     if site is not None:
         _placed(site, path)

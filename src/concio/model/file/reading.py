@@ -75,7 +75,12 @@ def load(path: str | os.PathLike[str]) -> Model:
     1.75
     """
     path = Path(path)
-    return model_from_tables(read_tables(path), folder=path.parent, name=str(path), chain=(path.resolve(),))
+    return model_of_file(read_tables(path), path)
+
+
+def model_of_file(data: dict[str, Any], path: Path) -> Model:
+    """Return the model that the tables of a file describe; raises as :func:`load`."""
+    return model_from_tables(data, folder=path.parent, name=str(path), chain=(path.resolve(),))
 
 
 def read_tables(path: Path) -> dict[str, Any]:
