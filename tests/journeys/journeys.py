@@ -618,7 +618,7 @@ def test_a_support_is_moved_by_clicking_and_its_settlement_is_asked(page: Browse
         model = concio.loads(text_of(client))
         assert sentence == concio.settle(model, "settlement", amount=3.0).verdict.sentence
         lines = page.js("document.querySelector('#verdict-text details pre').textContent")
-        assert "reactions    before the movement | at 1 of it" in lines
+        assert "reactions    before the movement | at its end" in lines
         page.click("#tab-look")
         page.until("document.querySelector('#play')")
         page.click("#tab-python")
