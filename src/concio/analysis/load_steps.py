@@ -128,7 +128,7 @@ def load_steps(
     before, reached, failed, solves, worst = state, [0.0], float("nan"), 1, first.certificate.worst
     locked = not np.isfinite(bound)
     unit = unit_of_load(dead, live) if locked else bound
-    size = FIRST * unit
+    size, curved = FIRST * unit, set[int]()
     while size > (smallest := finest * _smallest(reached[-1], failed if locked and failed == failed else unit)):
         trial = reached[-1] + size
         if trial >= bound * (1 - 1e-9):  # at the bound itself every state is about to move
@@ -136,10 +136,10 @@ def load_steps(
             size *= 0.5
             continue
         problem = step_problem(path, state, trial)
-        solution = _step(problem, state, progress)
+        solution = _step(problem, state, curved, progress)
         solves += 1
         if dead.dim == 2 and 0.5 * size <= smallest and solution.status is Status.GAVE_UP:
-            solution, solves = _step(problem, state, progress, starts=LAST_STARTS), solves + 1
+            solution, solves = _step(problem, state, curved, progress, LAST_STARTS), solves + 1
         if solution.status is Status.CANCELLED:
             break
         if not solution.solved:
@@ -250,13 +250,24 @@ def in_one_step(
 
 
 def _step(
-    problem: ContactProblem, state: PathState, progress: ProgressCallback | None, starts: int | None = None
+    problem: ContactProblem,
+    state: PathState,
+    curved: set[int],
+    progress: ProgressCallback | None,
+    starts: int | None = None,
 ) -> Solution:
-    """Return a load step from a state nearby, each connected part by itself."""
-    return solve_apart(problem, lambda part: _part_step(part, state, progress, starts or STARTS[problem.dim]))
+    """Return a load step from a state nearby, each connected part by itself.
+
+    ``curved`` holds the first unknown of each part of which a step took the interior point in space: Newton's method
+    does not reach the steps that follow, and is left out.
+    """
+    starts = starts or STARTS[problem.dim]
+    return solve_apart(problem, lambda part: _part_step(part, state, curved, progress, starts))
 
 
-def _part_step(part: Part, state: PathState, progress: ProgressCallback | None, starts: int) -> Solution:
+def _part_step(
+    part: Part, state: PathState, curved: set[int], progress: ProgressCallback | None, starts: int
+) -> Solution:
     problem = part.problem
     u, t_n, t_t = own(part, state.displacement, state.normal_force, state.friction_force)
     near = u, t_n, t_t
@@ -264,4 +275,10 @@ def _part_step(part: Part, state: PathState, progress: ProgressCallback | None, 
         solution = solve_near(problem, *near, starts=starts, progress=progress)
         if solution.solved or solution.status is Status.CANCELLED or not needed(problem):
             return solution
-    return engine.solve(problem, homotopy=False, starts=starts, near=near, progress=progress)
+    first = int(part.unknowns.min(initial=problem.unknowns))
+    solution = engine.solve(
+        problem, homotopy=False, starts=starts, near=near, newton=first not in curved, progress=progress
+    )
+    if solution.solved and solution.iterations:
+        curved.add(first)
+    return solution

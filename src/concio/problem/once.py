@@ -6,7 +6,6 @@ Paths, motions and diagnoses build many problems that share their matrices and d
 from __future__ import annotations
 
 import weakref
-from collections import deque
 from collections.abc import Callable
 from functools import wraps
 from typing import Any, TypeVar
@@ -14,7 +13,7 @@ from typing import Any, TypeVar
 Found = TypeVar("Found")
 
 KEPT = 8
-"""Answers of a function that are kept at a time."""
+"""Answers of a function that are kept at a time; one whose arguments are gone is not kept."""
 
 
 def once(function: Callable[..., Found]) -> Callable[..., Found]:
@@ -33,7 +32,10 @@ def once(function: Callable[..., Found]) -> Callable[..., Found]:
     >>> total(a), total(a), len(calls)
     (3.0, 3.0, 1)
     """
-    kept: deque[tuple[tuple[weakref.ref[Any], ...], Found]] = deque(maxlen=KEPT)
+    kept: list[tuple[tuple[weakref.ref[Any], ...], Found]] = []
+
+    def gone(_: weakref.ref[Any]) -> None:
+        kept[:] = [entry for entry in kept if all(r() is not None for r in entry[0])]
 
     @wraps(function)
     def answered(*arrays: Any) -> Found:
@@ -41,7 +43,8 @@ def once(function: Callable[..., Found]) -> Callable[..., Found]:
             if len(references) == len(arrays) and all(r() is a for r, a in zip(references, arrays, strict=True)):
                 return answer
         answer = function(*arrays)
-        kept.append((tuple(weakref.ref(a) for a in arrays), answer))
+        kept.append((tuple(weakref.ref(a, gone) for a in arrays), answer))
+        del kept[:-KEPT]
         return answer
 
     return answered

@@ -30,6 +30,15 @@ def test_answers_of_arrays_that_are_gone_are_not_given_to_others() -> None:
         assert gone() is None
 
 
+def test_answers_of_arrays_that_are_gone_are_not_kept() -> None:
+    once_made = once(lambda a: np.ones_like(a))
+    array = np.zeros(3)
+    answer = weakref.ref(once_made(array))
+    assert answer() is not None
+    del array
+    assert answer() is None
+
+
 def test_problems_that_share_their_matrices_share_their_parts() -> None:
     assembly = concio.assemble(concio.wall(length=2.0, height=1.0, block_size=(0.5, 0.25), friction=0.6))
     problem = assembly.problem()

@@ -1,5 +1,7 @@
 """Factors of K + C' D C on one pattern, against dense algebra: every diagonal where it belongs, unsymmetric D."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -140,7 +142,10 @@ def test_two_solves_of_one_problem_share_the_order_and_no_factors() -> None:
     assert one.factor.numeric is not other.factor.numeric
     other.factor.factorise(2.0 * other.factor.D, 1.0)
     assert (one.factor.made, other.factor.made, one.factor.has(one.factor.D, LOOSE)) == (1, 2, True)
-    assert scale(problem.with_loads(2.0 * problem.f)).factor.pattern is not one.factor.pattern
+    loaded = scale(problem.with_loads(2.0 * problem.f))
+    assert loaded.factor.pattern is one.factor.pattern, "loads do not change the matrices"
+    apart = scale(replace(problem, C_n=problem.C_n.copy()))
+    assert apart.factor.pattern is not one.factor.pattern
 
 
 def test_a_problem_whose_matrices_are_changed_is_solved_as_it_is_now() -> None:

@@ -195,13 +195,13 @@ def test_load_steps_halve_towards_a_multiplier_that_failed(monkeypatch) -> None:
     size = {"length": 0.5, "height": 1.0, "block_size": (0.5, 1.0), "mesh_size": 0.5}
     dead, live = dead_and_live(concio.assemble(concio.wall(friction=0.9, horizontal=1.0, **size)), "live")
     bound, step, tried, again = 0.5, stepping._step, [], []
-    lost = replace(step(dead, at_rest(dead), None), status=Status.GAVE_UP)
+    lost = replace(step(dead, at_rest(dead), set(), None), status=Status.GAVE_UP)
 
-    def fails(problem, state, progress, starts=None):
+    def fails(problem, state, curved, progress, starts=None):
         at = float((problem.f - dead.f) @ live / (live @ live)) / bound
         (tried if starts is None else again).append((round(64 * state.parameter / bound), round(64 * at)))
         far = at - state.parameter / bound > 0.2 and at > 0.45
-        return lost if far or at > 0.8 else step(problem, state, progress)
+        return lost if far or at > 0.8 else step(problem, state, curved, progress)
 
     monkeypatch.setattr(stepping, "_step", fails)
     steps = load_steps(dead, live, bound)
@@ -209,6 +209,27 @@ def test_load_steps_halve_towards_a_multiplier_that_failed(monkeypatch) -> None:
     assert round(64 * steps.failed / bound) == 52
     assert len(set(tried)) == len(tried) <= 11
     assert again == [(51, 52)], "more starts are for the step that is halved no more"
+
+
+def test_newtons_method_is_left_out_of_steps_in_space_once_it_does_not_arrive(monkeypatch) -> None:
+    """Whether it is tried, step by step: up to the first step that takes an iteration, and not from there on."""
+    size = {"width": 1.8, "depth": 1.5, "height": 0.6, "block_size": (0.6, 0.3, 0.3)}
+    tower = concio.tower(**size, friction=0.3, horizontal=0.1, towards=(1, 0), block="rigid", unit_weight=20.0)
+    solve, seen = stepping.engine.solve, []
+
+    def watched(problem, **options):
+        found = solve(problem, **options)
+        if "newton" in options:
+            seen.append((options["newton"], found.solved and found.iterations > 0))
+        return found
+
+    monkeypatch.setattr(stepping.engine, "solve", watched)
+    found = concio.limit(tower, search=False)
+    assert found.steps.worst <= 1e-9
+    assert 2.9 < found.steps.carried < 3.0, "a tenth of the weight slides at 3 times"
+    first = [iterated for _, iterated in seen].index(True)
+    assert 0 < first < len(seen) - 1
+    assert [newton for newton, _ in seen] == [k <= first for k in range(len(seen))]
 
 
 def test_settling_stops_where_every_round_contradicts_more_pairs(monkeypatch) -> None:

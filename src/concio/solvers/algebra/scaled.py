@@ -17,7 +17,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
-from weakref import WeakKeyDictionary
 
 import numpy as np
 import scipy.sparse as sp
@@ -25,6 +24,7 @@ import scipy.sparse as sp
 from concio.problem.cone import Cone
 from concio.problem.contact_problem import Array, ContactProblem, Engine
 from concio.problem.natural_map import natural_map
+from concio.problem.once import once
 from concio.problem.products import product, product_of_sizes
 from concio.problem.tolerances import BALANCE_ROUNDING, GRANTED, SMOOTH
 from concio.solvers.algebra.block_factor import BlockFactor
@@ -32,11 +32,6 @@ from concio.solvers.algebra.scales import compliances, interleaved, softness, ty
 
 LOOSE = 1e-10
 """Stiffness of the springs that keep unknowns which nothing holds where they are, scaled units."""
-
-
-_ORDERED: WeakKeyDictionary[ContactProblem, dict[Engine, tuple[sp.csr_array, sp.csr_array, BlockFactor]]]
-_ORDERED = WeakKeyDictionary()
-"""Matrices of a problem and their factor, ordered, for as long as the problem lives."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -318,18 +313,24 @@ def scale(problem: ContactProblem) -> Scaled:
 def _matrices(problem: ContactProblem, engine: Engine) -> tuple[float, sp.csr_array, sp.csr_array, BlockFactor]:
     """Return the typical stiffness, K over it, C interleaved, and a factor that has made nothing yet.
 
-    The matrix is put in order once for a problem, however often and by whatever it is solved, unless its entries have
-    been changed: that takes as long as some factorisations.
+    The matrix is put in order once for a structure, however often and by whatever it is solved, and under whatever
+    loads, unless its entries have been changed: that takes as long as some factorisations.
     """
     stiffness = typical_stiffness(problem)
     K, C = sp.csr_array(problem.K * (1.0 / stiffness)), interleaved(problem)
-    ordered = _ORDERED.setdefault(problem, {})
+    ordered = _ordered(problem.K, problem.C_n, problem.C_t, problem.inertia, problem.bodies)
     kept = ordered.get(engine)
     mass = problem.inertia
     if kept is None or not (_same(kept[0], K) and _same(kept[1], C) and kept[2].may_add(mass)):
         factor = BlockFactor(K, C, problem.pairs, problem.bodies, engine, added=mass)
         kept = ordered[engine] = K, C, factor
     return stiffness, K, C, kept[2].afresh()
+
+
+@once
+def _ordered(*_: Array | sp.csr_array) -> dict[Engine, tuple[sp.csr_array, sp.csr_array, BlockFactor]]:
+    """Return where the matrices of a structure and their factors in order are kept."""
+    return {}
 
 
 def _mean_mass(problem: ContactProblem) -> float:

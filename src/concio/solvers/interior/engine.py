@@ -16,6 +16,7 @@ def solve(
     starts: int | None = None,
     homotopy: bool = True,
     near: tuple[Array, Array, Array] | None = None,
+    newton: bool = True,
     least: bool = True,
 ) -> Solution:
     """Solve one load step of a problem of any dimension.
@@ -33,6 +34,8 @@ def solve(
     near : arrays, optional
         Displacements [m], t_n and t_t [kN] of a state from which Newton's method is tried first, then the interior
         point, in space.
+    newton : bool
+        Whether Newton's method is tried from there.
     least : bool
         Whether forces that equilibrium leaves open are the least, as they are reported; otherwise those in the middle
         of what the joint laws allow.
@@ -51,7 +54,8 @@ def solve(
         found = None
         if near is not None and scaled.dim == 3:
             state = scaled.bring(*near)
-            found = run.newton(*state, WEIGHTS[:1]) or run.from_near(*state)
+            found = run.newton(*state, WEIGHTS[:1]) if newton else None
+            found = found or run.from_near(*state)
         for start in starts_for(scaled)[:starts]:
             found = found or run.from_start(start)
         if found is None and homotopy and scaled.dim == 2 and scaled.rough.any():
