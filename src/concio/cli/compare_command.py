@@ -35,12 +35,16 @@ def compare(
     import concio
     from concio.analysis.lent_compliance import lend
     from concio.contact.assembly import as_assembly
+    from concio.errors import InputError
     from concio.solvers.algebra.threads import one_thread
     from concio.solvers.methods import find
     from concio.studies.compare import compare as compared
     from concio.studies.compare import format_table
 
     names = None if methods is None else [name.strip() for name in methods.split(",") if name.strip()]
+    if names is not None and not names:
+        msg = "--methods names no method"
+        raise InputError(msg, hint="give names separated by commas, or leave it out for all methods")
     for name in names or ():
         find(name)
     model = in_units(concio.load(file), units)

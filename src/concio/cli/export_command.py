@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
-from concio.cli.outcome import guarded, say
+from concio.cli.outcome import guarded, note, say
 from concio.cli.output import check_directory, check_file, replaced_directory, replaced_file
 from concio.errors import InputError
 
@@ -78,7 +78,21 @@ def export(
         add_own(directory, written)
     for path in written:
         say(str(path))
+    if not (result.solved or results or to == "toml" or scale == 0.0):
+        note(_without_an_answer(result, to, 1.0 if scale is None else scale))
     return 0
+
+
+def _without_an_answer(result: Result, to: str, scale: float) -> str:
+    """Return in two sentences what the files of a result hold that is not solved."""
+    if to in ("vtu", "csv"):
+        held = "Displacements, stresses and forces are left out"
+        held += "; 'velocity' is the mechanism." if to == "vtu" and result.mechanism is not None else "."
+    elif result.mechanism is not None:
+        held = f"The blocks are displaced by {scale:g} times the velocities of the mechanism [m]."
+    else:
+        held = "The blocks are displaced as in the last iteration, which is no answer."
+    return f"{result.status.value} {held}"
 
 
 def _check_results(result: Result, to: str, *, results: bool) -> None:

@@ -62,11 +62,17 @@ KINDS: dict[str, str] = {
 KINDS |= {f"{name}_{i}": KINDS[name] for name in ("friction_force", "shear", "slip") for i in (1, 2)}
 """Kind of quantity in each column, as :class:`concio.Units` tells it."""
 
+GIVEN = {"x", "y", "z", "n_x", "n_y", "n_z", "length", "area", "volume"}
+GIVEN |= {f"t{i}_{axis}" for i in ("", 1, 2) for axis in "xyz"}
+"""Columns of the model itself: all other numbers are those of an answer."""
+
 
 @short_repr
 @dataclass(frozen=True, eq=False)
 class Tables:
     """Tables of one result. Each is a dict of arrays of one length, which are copies: they can be changed.
+
+    Of a result that is not solved there are no displacements, stresses and forces: these are nan, states are empty.
 
     Parameters
     ----------
@@ -90,7 +96,7 @@ class Tables:
         model, stress = self.result.model, self.result.stress
         s1, s2, angle = stress.principal
         motion = body_motions(self.result)
-        return owned({
+        return self.owned({
             "body": np.array([b.name for b in model.bodies]),
             "kind": np.array([b.kind for b in model.bodies]),
             "role": np.array([b.role for b in model.bodies]),
@@ -118,7 +124,7 @@ class Tables:
         the plane; in space the normal force there, with the shear force at the middle and the torsion.
         """
         j = self.result.joints
-        return owned({
+        return self.owned({
             **self.names(j.body_a, j.body_b),
             **vectors("", j.middle),
             **vectors("n_", j.normal),
@@ -145,7 +151,7 @@ class Tables:
         c = self.result.contacts
         p = c.pairs
         laws = np.array([*p.law_names, "tie"])
-        return owned({
+        return self.owned({
             **self.names(p.body_a, p.body_b),
             "interface": p.interface,
             "law": laws[p.law],
@@ -166,12 +172,12 @@ class Tables:
         """Return one row a fixed body or support: its force on the structure."""
         found = self.result.reactions
         force = np.array(list(found.values()), dtype=float).reshape(-1, self.result.model.dim)
-        return owned({"support": np.array(list(found), dtype=str), **vectors("force_", force)})
+        return self.owned({"support": np.array(list(found), dtype=str), **vectors("force_", force)})
 
     def ties(self) -> Table:
         """Return one row a tie: its blocks, tension, elongation, state, and its force on the first block."""
         found = self.result.ties
-        return owned({
+        return self.owned({
             "tie": np.array(found.names, dtype=str),
             "body_a": np.array([a for a, _ in found.bodies], dtype=str),
             "body_b": np.array([b for _, b in found.bodies], dtype=str),
@@ -202,15 +208,25 @@ class Tables:
         """Return the columns of the shear force and of where the resultant acts, one meaning in plane and space."""
         return {**vectors("shear_", j.shear_vector), "shear_size": j.shear_size, **vectors("at_", j.point)}
 
+    def owned(self, table: Table) -> Table:
+        """Return a table of copies, which can be written to; without the numbers of an answer where there is none."""
+        if self.result.solved:
+            return {name: np.array(values) for name, values in table.items()}
+        return {name: _unknown(values) if _answers(name, values) else np.array(values)
+                for name, values in table.items()}  # fmt: skip
+
     def names(self, a: Array, b: Array) -> Table:
         """Return the columns with the names of the bodies ``a`` and ``b`` (n,)."""
         names = np.array([*(body.name for body in self.result.model.bodies), ""])  # -1: the free end of a tie
         return {"body_a": names[a], "body_b": names[b]}
 
 
-def owned(table: Table) -> Table:
-    """Return a table of copies, which can be written to and changes nothing of the result."""
-    return {name: np.array(values) for name, values in table.items()}
+def _answers(name: str, values: Array) -> bool:
+    return name in ("state", "slipping") or (values.dtype.kind == "f" and name not in GIVEN)
+
+
+def _unknown(values: Array) -> Array:
+    return np.full(len(values), np.nan) if values.dtype.kind == "f" else np.full(len(values), "")
 
 
 def components(name: str, values: Array) -> Table:

@@ -7,11 +7,11 @@ import warnings
 import numpy as np
 
 from concio.post.body_motion import body_motions
-from concio.post.result_tables import Array, Table, Tables, owned, vectors
+from concio.post.result_tables import Array, Table, Tables, vectors
 
 
 class SpaceTables(Tables):
-    """Tables of one result in space. Each is a dict of arrays of one length."""
+    """Tables of one result in space; of one that is not solved as in the plane."""
 
     def bodies(self) -> Table:
         """Return one row a body: name, kind, centroid, mean displacement and rotation, mean and principal stresses."""
@@ -19,7 +19,7 @@ class SpaceTables(Tables):
         model, stress = result.model, result.stress
         motion = body_motions(result)
         values, _ = stress.principal_in_space
-        return owned({
+        return self.owned({
             "body": np.array([b.name for b in model.bodies]),
             "kind": np.array([b.kind for b in model.bodies]),
             "role": np.array([b.role for b in model.bodies]),
@@ -38,7 +38,7 @@ class SpaceTables(Tables):
         sign: ``shear_force``, which was its size, is deprecated and not among the columns; it is ``shear_size``.
         """
         j = self.result.joints_in_space
-        return _Joints(owned({
+        return _Joints(self.owned({
             **self.names(j.body_a, j.body_b),
             **vectors("", j.middle),
             **vectors("n_", j.normal),

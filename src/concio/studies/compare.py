@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from concio.arguments import closest, strict
-from concio.errors import MethodError
+from concio.errors import InputError, MethodError
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import Progress, ProgressCallback, Solution
 from concio.solvers.methods import METHODS, check_options, find
@@ -141,7 +141,12 @@ def compare(
         There is no method of one of the names, or options are given for one that is not compared.
     ArgumentError
         A method has no option of a name that was given.
+    InputError
+        ``time_limit`` is not positive.
     """
+    if time_limit is not None and not time_limit > 0:
+        msg = f"time_limit = {time_limit:g} is not positive: no method would get any time"
+        raise InputError(msg, hint="give seconds for each method, or None for no limit")
     names = [name for name in METHODS if name != "auto"] if methods is None else list(dict.fromkeys(methods))
     for name in (*names, engine):
         find(name)

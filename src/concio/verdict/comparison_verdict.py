@@ -56,7 +56,7 @@ def comparison_verdict(table: ComparisonTable) -> Verdict:
             outcome=Outcome.HOLDS if met else Outcome.UNDECIDED,
             status=MEETS if met else "undecided",
             question=Question("which methods meet the equations of one contact problem"),
-            headline=f"{len(met)} of {len(table.rows)} methods meet the equations.",
+            headline=f"{len(met)} of {_methods(table)} {_meets(met)} the equations.",
             answer=answer,
             proof="one certificate for all methods, computed from the matrices of the problem",
             limits=(*limits, "of a structure this says something only with the verdict of its model: 'concio run'"),
@@ -64,15 +64,23 @@ def comparison_verdict(table: ComparisonTable) -> Verdict:
     decided = table.decided
     return replace(
         decided,
-        question=replace(decided.question, asked=f"{decided.question.asked}, by {len(table.rows)} methods"),
+        question=replace(decided.question, asked=f"{decided.question.asked}, by {_methods(table)}"),
         answer=f"{decided.answer} {answer}",
         limits=(*decided.limits, *limits),
     )
 
 
+def _methods(table: ComparisonTable) -> str:
+    return f"{len(table.rows)} method" + "s" * (len(table.rows) != 1)
+
+
+def _meets(met: list[ComparisonRow]) -> str:
+    return "meets" if len(met) == 1 else "meet"
+
+
 def _rows_words(table: ComparisonTable, met: list[ComparisonRow]) -> str:
     names = ", ".join(row.method for row in met) or "none"
-    text = f"Of {len(table.rows)} methods {len(met)} meet the equations with the certificate of all: {names}."
+    text = f"Of {_methods(table)} {len(met)} {_meets(met)} the equations with the certificate of all: {names}."
     if any(row.outcome == BALANCED_ONLY for row in met):
         text += (
             " Their forces balance within friction as self-stress alone: the verdict above is that of the structure, "

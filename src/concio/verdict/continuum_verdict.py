@@ -47,15 +47,23 @@ def continuum_verdict(found: ContinuumComparison, halving: BlockHalving | None =
         proof=_proof(found),
         meaning="The continuum has the moduli and the strength of the cell. It has no lintels, no edges and no arch: "
         "what differs is what it leaves out.",
-        limits=(
-            "the limit loads are those of associated friction: upper bounds of what Coulomb friction carries",
-            *notes,
-        )
-        if found.strength is not None
-        else tuple(notes),
+        limits=(*_limits(found), *notes),
         unchecked=tuple(dict.fromkeys(unchecked)),
         attention=attention(found.assembly),
     )
+
+
+def _limits(found: ContinuumComparison) -> list[str]:
+    """Return what limit loads say nothing about: friction that is not associated, and the factors of the others."""
+    if found.strength is None:
+        return []
+    lines = ["the limit loads are those of associated friction: upper bounds of what Coulomb friction carries"]
+    if found.elastic is not None:
+        other = {k: v for k, v in found.elastic.blocks.factors.items() if v != 1.0}
+        told = ", ".join(f"'{name}' {value:g}" for name, value in other.items())
+        if told:
+            lines.append(f"factors of the elastic answers alone: {told}; limit loads are those with the loads as given")
+    return lines
 
 
 def _unchecked(found: ContinuumComparison) -> list[str]:
@@ -98,16 +106,19 @@ def _proof(found: ContinuumComparison) -> str:
     if found.elastic is not None:
         lines.append(f"continuum: residual of its stiffness equations {found.elastic.continuum.residual:.0e}")
     if found.strength is not None:
-        lines.append(
-            f"limit loads: stresses in balance {found.strength.static.residual:.0e} from below, a mechanism "
-            f"{found.strength.kinematic.residual:.0e} from above; blocks {found.strength.blocks.associated.worst:.0e}"
+        ends = (
+            ("stresses in balance", found.strength.static.residual, "from below"),
+            ("a mechanism", found.strength.kinematic.residual, "from above"),
         )
+        shown = [f"{word} {residual:.0e} {side}" for word, residual, side in ends if math.isfinite(residual)]
+        lines.append(f"limit loads: {', '.join(shown) or 'none'}; blocks {found.strength.blocks.associated.worst:.0e}")
     return "; ".join(lines)
 
 
 def continuum_strength_words(found: StrengthComparison) -> list[str]:
     """Return the limit loads of blocks and continuum, a phrase each."""
-    (low, high), own = found.bracket, found.blocks.associated.multiplier
+    low, high = (v + 0.0 for v in found.bracket)
+    own = found.blocks.associated.multiplier
     lower, upper = found.proven
     words = "any multiple" if math.isinf(own) else f"{own:.6g}"
     named = "' and '".join(found.live)

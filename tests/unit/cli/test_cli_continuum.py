@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ import pytest
 import concio
 from commands import run
 from concio.cli.halved import halved_file
+from concio.verdict.continuum_verdict import continuum_strength_words
 
 WALL = """
 title = "pushed wall"
@@ -104,11 +106,27 @@ def test_figures_show_blocks_and_continuum_at_one_scale(wall):
         rigid.plot.mechanism()
 
 
+def test_limit_loads_say_that_factors_are_not_theirs_and_proofs_name_what_there_is(wall):
+    """Loads times 2 stood in the question of limit loads that had them once; no stresses were "in balance inf"."""
+    found = concio.compare_with_continuum(concio.load(wall), factors={"dead": 1.5}, mesh_size=0.8)
+    assert any("factors of the elastic answers alone: 'dead' 1.5" in line for line in found.verdict.limits)
+    assert "from below" in found.verdict.proof
+    none = replace(found.strength.static, multiplier=np.nan, residual=np.inf)
+    without = replace(found, strength=replace(found.strength, static=none)).verdict
+    assert "inf" not in without.proof
+    assert "from above" in without.proof
+    exact = replace(found.strength.static, multiplier=-0.0)
+    words = continuum_strength_words(replace(found.strength, static=exact))
+    assert "carries 0 " in words[1]
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
         (("wall.toml", "--halve", "9"), "between 0 and 6"),
         (("wall.toml", "--halve", "1", "--factor", "live=0.5"), "--factor does not go"),
+        (("wall.toml", "--no-elastic", "--no-strength"), "neither elastic answers nor limit loads"),
+        (("wall.toml", "--no-elastic", "--factor", "live=2"), "load factors are those of the elastic comparison"),
         (("wall.toml", "--mesh-size", "wide"), "wide"),
         (("wall.toml", "--group", "wind"), "no load group 'wind'"),
         (("wall.toml", "--cell", "wall.toml"), "no periods"),

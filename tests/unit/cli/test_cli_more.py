@@ -13,6 +13,7 @@ import concio
 from commands import run
 from concio.analysis.path import ControlPoint, Stage, run_path
 from concio.cli.path_lines import path_lines
+from concio.post.result_tables import GIVEN
 
 TOPPLES = """
 [column]
@@ -143,6 +144,24 @@ def test_tables_of_a_result_in_space_are_exported(tmp_path: Path) -> None:
         assert path.read_bytes() == written[path.name]
     with pytest.raises(concio.InputError, match="three principal values"):
         _ = result.stress.principal
+
+
+def test_tables_of_a_result_without_an_answer_hold_no_numbers_of_one(slender: Path) -> None:
+    """Stresses, forces and reactions of a wall that falls were 0, and its joints open."""
+    assert run("run", slender, "--out", "r", "--no-figures", "-q")[0] == 3
+    code, out, err = run("export", "r", "--to", "csv")
+    assert code == 0
+    assert err.startswith("No equilibrium is possible")
+    assert "Displacements, stresses and forces are left out." in err
+    for path in map(Path, (*out.splitlines(), "r/bodies.csv")):
+        head, *rows = list(csv.reader(path.read_text().splitlines()))
+        held = {name.split(" ")[0] for row in rows for name, cell in zip(head, row, strict=True) if cell}
+        assert held <= {*GIVEN, "body", "kind", "role", "body_a", "body_b", "interface", "law", "support"}
+        assert "x" in held or "support" in held
+    err = run("export", "r", "--to", "dxf", "--scale", "0.1")[2]
+    assert "displaced by 0.1 times the velocities of the mechanism" in err
+    assert "'velocity' is the mechanism" in run("export", "r", "--to", "vtu")[2]
+    assert run("export", "r", "--to", "dxf", "--scale", "0", "--force")[2] == ""
 
 
 @pytest.mark.usefixtures("blank_figures")

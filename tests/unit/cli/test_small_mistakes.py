@@ -92,3 +92,23 @@ def test_a_kind_that_there_is_not_is_told_without_words_of_a_library() -> None:
     assert code == 2
     assert "'facade' is not one of 'panel', 'wall'" in " ".join(told.replace("│", " ").split())
     assert "Value error" not in told
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [(("--methods", ","), "names no method"), (("--methods", "lemke", "--time-limit", "-1"), "time_limit = -1"),
+     (("--time-limit", "nan"), "time_limit = nan")],
+)  # fmt: skip
+def test_compare_asks_for_a_method_and_for_time(tmp_path: Path, options: tuple[str, ...], said: str) -> None:
+    """No method was the engine alone; with no time every method was "too slow" and the exit code 0."""
+    (tmp_path / "m.toml").write_text('[column]\nwidth = 0.5\nheight = 1.0\nblocks = 2\nblock = "rigid"')
+    code, out, err = run("compare", tmp_path / "m.toml", *options)
+    assert (code, out) == (2, "")
+    assert said in err
+
+
+def test_one_method_is_one_method(tmp_path: Path) -> None:
+    (tmp_path / "m.toml").write_text('[column]\nwidth = 0.5\nheight = 1.0\nblocks = 2\nblock = "rigid"')
+    out = run("compare", tmp_path / "m.toml", "--methods", "interior-point")[1]
+    assert "by 1 method\n" in out
+    assert "Of 1 method 1 meets the equations" in out

@@ -235,6 +235,24 @@ def test_what_cannot_be_read_can_be_left_out(tmp_path: Path) -> None:
     assert "has an opening" in str(skipped.generator["faults"])
 
 
+@pytest.mark.parametrize(
+    ("kind", "relation", "said"),
+    [("IFCVOIDINGFEATURE", "IFCRELVOIDSELEMENT", "has an opening, {}, which is not cut out"),
+     ("IFCEARTHWORKSCUT", "IFCRELVOIDSELEMENT", "has an opening, {}, which is not cut out"),
+     ("IFCPROJECTIONELEMENT", "IFCRELPROJECTSELEMENT", "has a projection, {}, which is not joined to it")],
+)  # fmt: skip
+def test_features_of_a_product_are_no_blocks(tmp_path: Path, kind: str, relation: str, said: str) -> None:
+    """What is to be cut out was a block of stone, and a pilaster that a wall has stood beside it with a joint."""
+    f = IfcText()
+    wall = f.product("wall", f.brep(CUBE, BOX), kind="IFCWALL")
+    feature = f.product("feature", f.brep(CUBE + np.array([1, 0, 0]), BOX), kind=kind)
+    f.product("stone", f.brep(CUBE + np.array([0, 0, 1]), BOX))
+    f.relate(relation, wall, feature)
+    with pytest.raises(GeometryError, match=said.format(feature)):
+        read(f, tmp_path)
+    assert [b.name for b in read(f, tmp_path, on_fault="skip").bodies] == ["stone"]
+
+
 def valid() -> str:
     f = IfcText()
     f.product("stone", f.brep(CUBE, BOX))

@@ -21,8 +21,11 @@ from concio.model.solids.step_file import Instance, Reference, StepFile
 NO_BLOCKS = {
     "IFCOPENINGELEMENT", "IFCOPENINGSTANDARDCASE", "IFCSPACE", "IFCSPATIALZONE", "IFCEXTERNALSPATIALELEMENT", "IFCGRID",
     "IFCANNOTATION", "IFCVIRTUALELEMENT", "IFCSITE", "IFCBUILDING", "IFCBUILDINGSTOREY", "IFCPORT", "IFCREFERENT",
+    "IFCVOIDINGFEATURE", "IFCEARTHWORKSCUT", "IFCPROJECTIONELEMENT", "IFCSURFACEFEATURE",
 }  # fmt: skip
 """Classes of products that are not bodies of their own."""
+FEATURES = {"IFCRELVOIDSELEMENT": ("an opening", "cut out"), "IFCRELPROJECTSELEMENT": ("a projection", "joined to it")}
+"""Relations to what is cut out of a body or joined to it: what it is, and what is not done."""
 NAMES = (
     "IfcBeam", "IfcBuildingElement", "IfcBuildingElementPart", "IfcBuildingElementProxy", "IfcColumn", "IfcCovering",
     "IfcDiscreteAccessory", "IfcDoor", "IfcElementAssembly", "IfcFooting", "IfcFurnishingElement", "IfcFurniture",
@@ -54,7 +57,7 @@ def read_ifc(path: Path) -> Scene:
 def _scene(file: StepFile) -> Scene:
     words, bodies, placements = _Words(file), Bodies(), Placements()
     metres = metres_of(file)
-    openings = {r.value(4): r.value(5) for r in file.of_kind("IFCRELVOIDSELEMENT")}
+    features = {r.value(4): (*FEATURES[r.kind], r.value(5)) for r in file.of_kind(*FEATURES)}
     shapes: list[Shape] = []
     left_out = world_left_out(file)
     total = 0
@@ -77,10 +80,11 @@ def _scene(file: StepFile) -> Scene:
                 left_out.append(f"'{name}' ({source}) has no body")
                 continue
             for host in words.hosts(product):
-                if host.number in openings:
+                if host.number in features:
                     whole = "" if host is product else f"is part of {host.label}, which "
-                    what = f"{whole}has an opening, #{openings[host.number]}, which is not cut out"
-                    product.refuse(what, f"{TESSELLATE}, openings cut, or model the blocks round the opening")
+                    word, done, number = features[host.number]
+                    hint = f"{TESSELLATE}, openings cut and projections joined, or model the blocks round the opening"
+                    product.refuse(f"{whole}has {word}, #{number}, which is not {done}", hint)
             matrix = placements.matrix(product.open_instance(5))
             surfaces = [moved(s, matrix) for item in items for s in bodies.surfaces(item)]
         except InputError as error:
