@@ -37,7 +37,7 @@ def verify(
     except OSError as error:
         msg = f"cannot be read: {error.strerror or error}"
         raise InputError(msg, where=str(certificate)) from None
-    except (ValueError, KeyError, IndexError, TypeError, ArithmeticError) as error:
+    except (ValueError, KeyError, IndexError, TypeError, AttributeError, ArithmeticError, RecursionError) as error:
         msg = f"refused: {error}"
         raise InputError(msg, where=str(certificate), hint="make it again with 'concio prove'") from None
     if json:

@@ -289,7 +289,7 @@ def main(path: str) -> int:
     except KeyError as error:
         print(f"REFUSED: an entry {error} is missing")
         return 1
-    except (ValueError, IndexError, TypeError, ArithmeticError, OSError) as error:
+    except (ValueError, IndexError, TypeError, AttributeError, ArithmeticError, RecursionError, OSError) as error:
         print(f"REFUSED: {error}")
         return 1
     return 0

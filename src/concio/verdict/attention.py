@@ -1,8 +1,8 @@
 """What is suspicious about a model: one list, which every command, result, exception, ``--json`` and report carries.
 
 Nothing here is refused. Each finding is a sentence for a person: joints that were not made, blocks that touch nothing,
-loads or parts of them that act nowhere, weights that are missing or act twice, and implausible numbers
-(:mod:`concio.model.plausibility`).
+blocks on bearings of millimetres, loads or parts of them that act nowhere, weights that are missing or act twice, and
+implausible numbers (:mod:`concio.model.plausibility`).
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from concio.model.model import Model
 from concio.model.plausibility import implausible
 from concio.verdict.connection import apart
 from concio.verdict.lost_loads import lost_loads
+from concio.verdict.narrow_bearings import narrow_bearings
 from concio.verdict.odd_weights import odd_weights
 
 ALMOST = "almost made, but not made or made only in part"
@@ -72,6 +73,7 @@ def attention_of(model: Model, detection: Detection) -> tuple[str, ...]:
     found = (
         *joints_not_made(detection),
         *without_area(model, detection),
+        *narrow_bearings(model, detection),
         *apart(model, detection),
         *drawn,
         *lost_loads(model),

@@ -5,13 +5,16 @@ Numbers are whole and of no symmetry; normals are not of length one.
 
 from __future__ import annotations
 
+import json
 from fractions import Fraction
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from concio.proof import verify
+from commands import run
+from concio.proof import verify, verify_equilibrium
 from concio.proof.exact_certificate import sealed
 
 MOTION2 = [[["0", "0"], ["0"]], [["3", "-2"], ["5"]]]
@@ -285,3 +288,22 @@ def test_groups_are_constant_or_multiplied_and_not_both() -> None:
     with pytest.raises(ValueError, match="both constant and multiplied"):
         verify.check(sealed(data))
 
+
+
+@pytest.mark.parametrize("wrong", ["constant", "joints"])
+@pytest.mark.parametrize("claim", ["balance", "equilibrium"])
+def test_an_entry_of_another_kind_is_refused_and_no_bug(
+    claim: str, wrong: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A list for a table ended in a traceback of the program, and "a bug in concio" of the command."""
+    one = {"format": "", "claim": claim, "bodies": [body(2)], "joints": [joint(2)], "loads": [], "forces": [["0", "0"]],
+           "shapes": [], "states": [["open", "free"]], "solution": [], "constant": {"dead": "1"}}  # fmt: skip
+    one["loads"] = [{"kind": "weight", "body": 0, "group": "dead", "value": ["0", "-1"]}]
+    place = tmp_path / "wrong.json"
+    place.write_text(json.dumps(sealed({**one, wrong: ["dead"]})))
+    program = verify if claim == "balance" else verify_equilibrium
+    assert program.main(str(place)) == 1
+    assert capsys.readouterr().out.startswith("REFUSED")
+    code, _, err = run("verify", place)
+    assert code == 2
+    assert "refused" in err
