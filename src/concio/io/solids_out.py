@@ -29,6 +29,8 @@ Array = np.ndarray
 
 FILM = 10.0
 """Duration of the animation of a push [s]."""
+SINGLE = 1e-5
+"""What single precision may move a corner by, as a share of the size of its block."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -206,14 +208,25 @@ def _rhino(path: Path, blocks: Sequence[Drawn]) -> None:
         if layer not in numbers:
             numbers[layer] = document.Layers.AddLayer(layer, (150, 140, 120, 255))
         mesh = rhino3dm.Mesh()
-        for x, y, z in block.points.tolist():
-            mesh.Vertices.Add(x, y, z)
+        _add_vertices(path, mesh.Vertices, block)
         for triangle in block.cells.tolist():
             mesh.Faces.AddFace(*triangle)
         about = rhino3dm.ObjectAttributes()
         about.Name, about.LayerIndex = block.name, numbers[layer]
         document.Objects.AddMesh(mesh, about)
     document.Write(str(path), 7)
+
+
+def _add_vertices(path: Path, vertices: Any, block: Drawn) -> None:
+    """Add the corners of a block in double precision; refuse what a package without it would distort."""
+    vertices.UseDoublePrecisionVertices = True
+    add = getattr(vertices, "AddPoint3d", None)
+    size = float(np.ptp(block.points, axis=0).max())
+    if add is None and np.abs(block.points - block.points.astype(np.float32)).max() > SINGLE * size:
+        msg = f"'{block.name}' lies so far from the origin that this version of rhino3dm would distort it"
+        raise InputError(msg, where=str(path), hint="pip install --upgrade rhino3dm")
+    for x, y, z in block.points.tolist():
+        (add or vertices.Add)(x, y, z)
 
 
 WRITERS: dict[str, Callable[[Path, Sequence[Drawn]], None]] = {

@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 import re
 import struct
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,6 +17,7 @@ import concio
 from commands import run
 from concio import GeometryError, InputError, Model, Polyhedron
 from concio.contact.detection import detect
+from concio.io.solids_out import Drawn, _add_vertices
 from concio.model.polyhedron import BOX
 
 CUBE = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], dtype=float)
@@ -50,6 +53,28 @@ def test_what_is_written_is_read_back(tmp_path: Path, suffix: str) -> None:
     assert sum(p.area for p in joints) == pytest.approx(sum(p.area for p in before), rel=1e-5)
     if suffix == ".stl":  # triangles in one plane are one face again
         assert len(kept["v04"].faces) == len(model.polyhedra[[b.name for b in model.bodies].index("v04")].faces)
+
+
+@pytest.mark.parametrize("suffix", [".obj", ".stl", ".json", ".dxf", ".3dm"])
+def test_blocks_in_coordinates_of_a_map_keep_their_shape(tmp_path: Path, suffix: str) -> None:
+    """3dm files held single precision: a block of 0.4 m3 was one of 0.25 m3 at 5,000 km from the origin."""
+    far = np.array([512345.67, 4987654.32, 120.4])
+    block = Polyhedron("a", CUBE * [1.0, 0.8, 0.5] + far, BOX, kind="rigid")
+    model = Model((block,), {"block": concio.Rigid(20.0)}, {"joint": concio.JointLaw(0.6)})
+    concio.write_solids(tmp_path / f"m{suffix}", model)
+    again = concio.model_from_solids(tmp_path / f"m{suffix}", block="rigid").polyhedra[0]
+    assert again.volume == pytest.approx(0.4, rel=1e-6)
+    assert again.vertices.min(0) == pytest.approx(far, abs=1e-6)
+
+
+def test_a_package_with_single_precision_alone_distorts_no_block() -> None:
+    added: list[tuple[float, ...]] = []
+    old = SimpleNamespace(Add=lambda *at: added.append(at))
+    near = Drawn("a", "", False, CUBE, BOX, np.zeros((0, 3), dtype=int))
+    _add_vertices(Path("m.3dm"), old, near)
+    assert len(added) == 8
+    with pytest.raises(InputError, match="'a' lies so far from the origin"):
+        _add_vertices(Path("m.3dm"), old, replace(near, points=CUBE + 4987654.32))
 
 
 def test_gltf_is_what_another_reader_sees(tmp_path: Path) -> None:

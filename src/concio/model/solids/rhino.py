@@ -49,7 +49,8 @@ def read_rhino(path: Path) -> Scene:
             raise InputError(msg, where=str(path), hint="mesh it in Rhino, or save after it was shown shaded")
         points, faces, start = [], [], 0
         for mesh in meshes:
-            points += [(v.X, v.Y, v.Z) for v in mesh.Vertices]
+            corners = getattr(mesh.Vertices, "ToPoint3dArray", lambda own=mesh.Vertices: own)()  # double precision
+            points += [(v.X, v.Y, v.Z) for v in corners]
             for f in range(len(mesh.Faces)):
                 loop = list(dict.fromkeys(mesh.Faces[f]))
                 if len(loop) > 2:
