@@ -56,6 +56,9 @@ def continuum(
     if not 0 <= halve <= 6:
         msg = f"--halve {halve} is not between 0 and 6"
         raise InputError(msg, hint="each halving has four times as many blocks")
+    if not (elastic or strength):
+        msg = "neither elastic answers nor limit loads are to be compared"
+        raise InputError(msg, hint="leave out --no-elastic or --no-strength")
     if halve and factor:
         msg = "--factor does not go with --halve"
         raise InputError(msg, hint="write the loads into the file as they are to act")

@@ -291,3 +291,16 @@ def test_which_bounds_stand(exact, static, kinematic, proven):
     found = StrengthComparison(("live",), domain, None, *parts)
     assert found.proven == proven
     assert found.bracket == pytest.approx((static[0], kinematic[0]), nan_ok=True)
+
+
+def test_a_mechanism_under_the_constant_loads_is_found_where_it_leaves_the_programme_without_end() -> None:
+    """A stack bond pushed sideways while its weight grows: the simplex method went round and round, for hours."""
+    law = concio.JointLaw(0.6, normal_stiffness=1e7, tangential_stiffness=4e6)
+    wall = concio.wall(
+        length=2.0, height=2.0, block_size=(0.5, 0.25), bond="stack", thickness=0.3, friction=law, horizontal=0.05,
+        block=concio.Elastic(5e6, 0.0, unit_weight=20.0), top_pressure=200.0,
+    )  # fmt: skip
+    found = concio.compare_with_continuum(wall, live="dead", elastic=False)
+    assert found.strength is not None
+    assert found.strength.kinematic.multiplier == -np.inf
+    assert found.strength.proven == (True, True)

@@ -179,8 +179,8 @@ def compare_with_continuum(
     Raises
     ------
     InputError
-        The wall has no counterpart in a continuum, the cell is none or is not known, a group does not exist, neither
-        comparison is asked for, or factors are given without the elastic comparison, the only one that they are for.
+        The wall has no counterpart in a continuum, the cell is none or is not known, a group does not exist, or factors
+        are given without the elastic comparison, the only one that they are for.
     NoEquilibriumError
         The dead load alone cannot be carried by the blocks.
     SolverError
@@ -197,7 +197,9 @@ def compare_with_continuum(
     >>> print([round(1e3 * settlement, 2) for settlement in found.elastic.settlements])
     [0.11, 0.11, 0.12]
     """
-    _check_asked(elastic, strength, factors)
+    if factors and not elastic:
+        msg = "load factors are those of the elastic comparison, which is not asked for"
+        raise InputError(msg, hint="leave them out, or write the loads into the model as they are to act")
     assembly = as_assembly(wall)
     own = PeriodicCell.of(cell_of(assembly) if cell is None else cell)
     if abs(own.model.bodies[0].thickness - assembly.model.free_bodies[0].thickness) > 1e-9 * own.size:
@@ -220,16 +222,6 @@ def compare_with_continuum(
         else:
             why = f"there is no load group '{LIVE}' that grows"
     return ContinuumComparison(assembly, own, smooth, stretched, limits, note, why)
-
-
-def _check_asked(elastic: bool, strength: bool, factors: Mapping[str, float] | None) -> None:
-    """Raise where nothing is asked for, and where factors would be left aside."""
-    if not (elastic or strength):
-        msg = "neither elastic answers nor limit loads are to be compared"
-        raise InputError(msg, hint="ask for one of them at least")
-    if factors and not elastic:
-        msg = "load factors are those of the elastic comparison, which is not asked for"
-        raise InputError(msg, hint="leave them out, or write the loads into the model as they are to act")
 
 
 def _mesh_size(assembly: Assembly, given: float | None) -> float:
@@ -287,4 +279,6 @@ def _strength(
             best = found
     assert best is not None
     _told(progress, len(STRETCHES), "mechanism of the continuum")
-    return StrengthComparison(groups, domain, blocks, best, kinematic_bound(wall, faces, dead, live))
+    unsupported = bool(np.isnan(best.multiplier))
+    upper = kinematic_bound(wall, faces, dead, live, unsupported=unsupported)
+    return StrengthComparison(groups, domain, blocks, best, upper)

@@ -26,7 +26,7 @@ from concio.analysis.continuum.joint_domain import joint_half_planes
 from concio.errors import SolverError
 from concio.kinematics.frames import turned_left
 from concio.problem.tolerances import DEAD_POWER
-from concio.solvers.statics.programme import optimise
+from concio.solvers.statics.programme import Optimum, optimise
 
 Array = np.ndarray
 
@@ -57,9 +57,21 @@ class KinematicBound:
 
 
 def kinematic_bound(
-    wall: Continuum, faces: HalfSpaces, dead: Mapping[str, float], live: Mapping[str, float]
+    wall: Continuum,
+    faces: HalfSpaces,
+    dead: Mapping[str, float],
+    live: Mapping[str, float],
+    *,
+    unsupported: bool = False,
 ) -> KinematicBound:
     """Return the best upper bound on this mesh; arguments as of the lower one (``static_bound``).
+
+    Parameters
+    ----------
+    wall, faces, dead, live
+    unsupported : bool
+        No stresses were found that carry the dead load: a mechanism under it alone is sought first. Where there is one
+        the programme of the multiplier has no end, and the simplex method may not find that out.
 
     Raises
     ------
@@ -92,13 +104,9 @@ def kinematic_bound(
     bounds = np.vstack([np.tile([-np.inf, np.inf], (2 * n, 1)), np.tile([0.0, np.inf], (k_mu + k_nu, 1))])
     cost = np.r_[-power[0], cost_mu, joint_cost]
     nothing = KinematicBound(np.inf, wall, np.zeros_like(wall.points), np.zeros((e, 3)), np.inf)
-    result = optimise(cost, (sp.csc_array(A), b), bounds, method="highs")
+    result, worthless = _optimum(cost, (sp.csc_array(A), b), bounds, 2 * n, unsupported=unsupported)
     if result.status == 2:
         return nothing
-    worthless = result.status == 3  # no live load is needed: find a mechanism on which the live load does no work
-    if worthless:
-        b, bounds = np.zeros_like(b), np.vstack([np.tile([-1.0, 1.0], (2 * n, 1)), bounds[2 * n :]])
-        result = optimise(cost, (sp.csc_array(A), b), bounds, method="highs")
     if result.status != 0:
         msg = f"the linear programme of the continuum's upper bound stopped: {result.message}"
         raise SolverError(msg, hint="use a coarser mesh")
@@ -118,6 +126,23 @@ def kinematic_bound(
     velocity = u.reshape(-1, 2)[: len(wall.points)] / top
     mean = (rate / length).reshape(e, 3, 3).mean(axis=1) / top
     return KinematicBound(multiplier, wall, velocity, mean, left / size)
+
+
+def _optimum(
+    cost: Array, equations: tuple[sp.csc_array, Array], bounds: Array, velocities: int, *, unsupported: bool
+) -> tuple[Optimum, bool]:
+    """Return the optimum, and whether it is a mechanism of bounded velocities on which the live load does no work."""
+    A, b = equations
+    slow = np.vstack([np.tile([-1.0, 1.0], (velocities, 1)), bounds[velocities:]])
+    if unsupported:
+        result = optimise(cost, (A, np.zeros_like(b)), slow, method="highs")
+        power = np.abs(cost[:velocities]) @ np.abs(result.x[:velocities]) if result.status == 0 else np.inf
+        if result.status == 0 and float(cost @ result.x) < -DEAD_POWER * float(power):
+            return result, True
+    result = optimise(cost, (A, b), bounds, method="highs")
+    if result.status != 3:
+        return result, False
+    return optimise(cost, (A, np.zeros_like(b)), slow, method="highs"), True
 
 
 @dataclass(frozen=True, eq=False)
