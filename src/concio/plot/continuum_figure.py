@@ -190,7 +190,7 @@ def plot_mechanisms(comparison: ContinuumComparison, axes: Sequence[Axes] | None
     low_word = f"{found.static.multiplier:.5g}" if np.isfinite(found.static.multiplier) else "nothing known"
     note = f"carries {low_word}, no equilibrium beyond {found.kinematic.multiplier:.5g}; dark: where it strains"
     if found.kinematic.multiplier == -np.inf:
-        note = "does not even carry the dead load; dark: where it strains"
+        note = "does not even carry the constant loads; dark: where it strains"
     style.dress(right, box, "Homogenised continuum", note)
     return [left, right]
 

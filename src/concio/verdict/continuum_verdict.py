@@ -96,7 +96,7 @@ def _strength(found: StrengthComparison | None) -> list[str]:
     own, (low, high) = found.blocks.associated.multiplier, found.bracket
     blocks = "no associated bound" if math.isinf(own) else f"associated bound {number(own, 6)}"
     if high == -math.inf:
-        return [f"Blocks: {blocks}; the continuum does not even carry the dead load."]
+        return [f"Blocks: {blocks}; the continuum does not even carry the constant loads."]
     ends = " to ".join("none" if math.isnan(v) else number(v, 6) if math.isfinite(v) else "any" for v in (low, high))
     return [f"Blocks: {blocks}; continuum: {ends}."]
 
@@ -125,8 +125,8 @@ def continuum_strength_words(found: StrengthComparison) -> list[str]:
     lines = [f"of '{named}' (associated): blocks {words}"]
     if high == -math.inf:
         said = "a mechanism proves it" if upper else "NOT proven"
-        return [*lines, f"continuum: does not even carry the dead load ({said}); it has no lintels"]
-    carries = "not even the dead load, on these meshes" if math.isnan(low) else "any multiple"
+        return [*lines, f"continuum: does not even carry the constant loads ({said}); it has no lintels"]
+    carries = "not even the constant loads, on these meshes" if math.isnan(low) else "any multiple"
     carries = f"{low:.6g}" if math.isfinite(low) else carries
     bound = "no mechanism found" if math.isinf(high) else f"no equilibrium beyond {high:.6g} ({_proven(upper)})"
     return [*lines, f"continuum: carries {carries} ({_proven(lower)}); {bound}"]

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections import defaultdict
 
 import numpy as np
 
 from concio.display import counted
-from concio.model.interfaces.detect import Detection
+from concio.model.interfaces.detect import Detection, Interface
+from concio.model.interfaces.patch import Patch
 from concio.model.model import Model
 from concio.model.polyhedron import Polyhedron
 
@@ -35,7 +37,7 @@ def narrow_bearings(model: Model, detection: Detection) -> tuple[str, ...]:
         up = float(face.normal[-1])
         if abs(up) > UPWARDS:
             carried, carries = (face.b, face.a) if up > 0 else (face.a, face.b)
-            bearings[carried][carries] += face.width
+            bearings[carried][carries] += _width(face)
     widest = {b: max(own.values()) for b, own in sorted(bearings.items()) if model.bodies[b].kind != "fixed"}
     found = [
         f"'{model.bodies[b].name}' ({width:.3g} m)"
@@ -50,6 +52,16 @@ def narrow_bearings(model: Model, detection: Detection) -> tuple[str, ...]:
         f"{rest} on joints narrower than {NARROW:g} m alone: {'; '.join(found[:MOST_NAMES])}{more}: "
         "are these bearings meant?",
     )
+
+
+def _width(face: Interface | Patch) -> float:
+    """Return the width of a joint, or what shows that it is not narrow: area over diameter, which is less [m]."""
+    if isinstance(face, Patch):
+        low, high = face.polygon.min(0), face.polygon.max(0)
+        least = face.area / math.dist(low, high)
+        if least >= NARROW:
+            return least
+    return face.width
 
 
 def _thickness(model: Model, b: int) -> float:
