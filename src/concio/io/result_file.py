@@ -34,6 +34,9 @@ from concio.fem.shape import Shape
 from concio.fem.solid import SolidShape
 from concio.io.codec import Decoder, Encoder
 from concio.io.owned_dir import settle
+from concio.model.actions import Temperature
+from concio.model.crossing import Axle, Vehicle
+from concio.model.fill import Fill, Layer
 from concio.model.interfaces.detect import Detection, Interface
 from concio.model.interfaces.near import NearMiss, Overlap
 from concio.model.interfaces.patch import Patch
@@ -44,7 +47,7 @@ from concio.model.polyhedron import Polyhedron
 from concio.model.stages import ControlPoint, Stage
 from concio.problem.certificate import Certificate, Kinematics
 from concio.problem.contact_problem import Laws
-from concio.problem.solution import Departure, Mechanism, Solution, Status
+from concio.problem.solution import Departure, Mechanism, PartOutcome, Solution, Status
 
 FORMAT = "concio result"
 VERSION = 1
@@ -53,10 +56,10 @@ VERSION = 1
 CLASSES: dict[str, type] = {
     cls.__name__: cls
     for cls in (
-        Assembly, Body, Certificate, Detection, Discretisation, Elastic, Elements, Interface, JointLaw, JointRule,
-        Condition, ControlPoint, Departure, Kinematics, Laws, Load, Mechanism, Model, NearMiss, Overlap, Pairs, Patch,
-        PointContact, Polyhedron, Result, Rigid, Shape, SolidShape, Solution, Stage, Status, Support, Supported, Tie,
-        Units,
+        Assembly, Axle, Body, Certificate, Condition, ControlPoint, Departure, Detection, Discretisation, Elastic,
+        Elements, Fill, Interface, JointLaw, JointRule, Kinematics, Laws, Layer, Load, Mechanism, Model, NearMiss,
+        Overlap, Pairs, PartOutcome, Patch, PointContact, Polyhedron, Result, Rigid, Shape, SolidShape, Solution,
+        Stage, Status, Support, Supported, Temperature, Tie, Units, Vehicle,
     )
 }  # fmt: skip
 """Classes that may appear in a file, by the names they have there. A renamed class keeps its name here."""
