@@ -66,7 +66,7 @@ def study(
         )
     table, report = (directory / name for name in WRITTEN)
     with replaced_file(table) as fresh:
-        write_csv(found.table(), fresh)
+        write_csv(found.table(), fresh, units={})
     title = f"Study of {file.name}" if language == "en" else f"Studio di {file.name}"
     with replaced_file(report) as fresh:
         write_study_report(found, fresh, title=title, figures=figures, language=language)

@@ -17,21 +17,23 @@ from concio.post.result_tables import UNITS
 Array = np.ndarray
 
 
-def write_csv(table: Mapping[str, Array], path: Path) -> Path:
+def write_csv(table: Mapping[str, Array], path: Path, units: Mapping[str, str] = UNITS) -> Path:
     """Write a table.
 
     Parameters
     ----------
     table : mapping of str to (n,) array
-        Columns; those named in :data:`concio.post.result_tables.UNITS` get their unit in the heading.
+        Columns; those named in ``units`` get their unit in the heading.
     path : Path
+    units : mapping of str to str
+        Of columns by name; none where the user names columns, whose units are not those of results.
 
     Returns
     -------
     Path
         ``path``.
     """
-    heading = [f"{name} [{UNITS[name]}]" if name in UNITS else name for name in table]
+    heading = [f"{name} [{units[name]}]" if name in units else name for name in table]
     columns = [_texts(column) for column in table.values()]
     with path.open("w", encoding="utf-8", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")

@@ -22,6 +22,8 @@ Array = np.ndarray
 SIZE = (6.4, 4.2)
 """Width and height of a new figure [in]."""
 
+ROUNDING = 1e-10
+"""Values that differ by less than this share of them stand in one bar."""
 JITTER = 0.04
 """Height by which points of yes and no are spread, so that they can be distinguished."""
 
@@ -65,7 +67,8 @@ class StudyPlots:
         values = self.study.values(output)
         known = values[np.isfinite(values)]
         if len(known):
-            ax.hist(known, bins="auto" if np.ptp(known) > 0 else 1, color=style.BLOCK, edgecolor=style.EDGE)
+            alike = np.ptp(known) <= ROUNDING * np.abs(known).max()
+            ax.hist(known, bins=1 if alike else "auto", color=style.BLOCK, edgecolor=style.EDGE)
         if threshold is not None:
             ax.axvline(threshold, color=style.TENSION.colour, ls="--", lw=1.2)
         of = f"{len(known)} of {len(values)} runs" if len(known) < len(values) else f"{len(known)} runs"

@@ -259,7 +259,7 @@ def _row_of(future: Future[Row], index: int) -> Row | None:
     except Exception as error:  # what executors raise where they cannot carry a run to a worker and back
         if type(error).__name__ in ("KilledWorker", "CommClosedError", "FutureCancelledError"):
             return None
-        msg = f"run {index + 1} could not be handed to a worker: {type(error).__name__}: {error}"
+        msg = f"run {index} could not be handed to a worker: {type(error).__name__}: {error}"
         hint = "functions must be importable by workers: put them into a module, or use executor='serial'"
         raise ConcioError(msg, hint=hint) from error
 

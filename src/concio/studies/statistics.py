@@ -13,6 +13,9 @@ from concio.errors import InputError
 
 Array = np.ndarray
 
+ROUNDING = 1e-10
+"""Values of an output that differ by less than this share of them are the same: what differs is rounding."""
+
 
 @dataclass(frozen=True)
 class Probability:
@@ -287,6 +290,25 @@ class Sensitivity:
     left_out: int = 0
 
 
+def alike(values: Array) -> bool:
+    """Return whether finite values (n,) differ by no more than rounding."""
+    return bool(np.ptp(values) <= ROUNDING * np.abs(values).max())
+
+
+def _tied(values: Array) -> Array:
+    """Return values (n,) of which those that differ by rounding alone are equal: to the least of them."""
+    order = np.argsort(values)
+    ordered = values[order]
+    with np.errstate(invalid="ignore"):  # infinite less infinite
+        steps = np.diff(ordered)
+        apart = np.where(np.isfinite(steps), steps > ROUNDING * np.abs(ordered[1:]), ordered[1:] != ordered[:-1])
+    starts = np.concatenate([[True], apart])[: len(ordered)]
+    first = np.maximum.accumulate(np.where(starts, np.arange(len(ordered)), 0))
+    tied: Array = np.empty_like(ordered)
+    tied[order] = ordered[first]
+    return tied
+
+
 def sobol_indices(names: Sequence[str], values: Array, seed: int = 0) -> Sensitivity:
     """Return Sobol indices of the values (n (k + 2),) of a ``saltelli`` sample, by SALib.
 
@@ -298,9 +320,9 @@ def sobol_indices(names: Sequence[str], values: Array, seed: int = 0) -> Sensiti
     without = ~np.isfinite(values)
     if without.any():
         first = int(np.flatnonzero(without)[0])
-        msg = f"{without.sum()} runs have no value, the first of them run {first + 1}"
+        msg = f"{without.sum()} runs have no value, the first of them run {first}"
         raise InputError(msg, hint="Sobol indices need a finite number of every run: look at these rows")
-    if np.ptp(values) == 0:
+    if alike(values):
         msg = "all runs give the same value: there is no variance to share"
         raise InputError(msg)
     try:
@@ -317,12 +339,13 @@ def sobol_indices(names: Sequence[str], values: Array, seed: int = 0) -> Sensiti
 def rank_correlations(columns: Mapping[str, Array], values: Array) -> Sensitivity:
     """Return Spearman's correlation of an output with each variable.
 
-    Infinite values have their rank at the end of the scale; runs without an answer (``nan``) are left out and counted.
+    Infinite values have their rank at the end of the scale; values that differ by rounding alone have the same; runs
+    without an answer (``nan``) are left out and counted.
     """
     from scipy.stats import rankdata
 
     known = ~np.isnan(values)
-    ranks = rankdata(values[known])
+    ranks = rankdata(_tied(values[known]))
     found = []
     for column in columns.values():
         own = rankdata(column[known])

@@ -15,8 +15,9 @@ import io
 import json
 import os
 import time
+import tomllib
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import asdict, is_dataclass
+from dataclasses import asdict, fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +27,8 @@ from concio.studies.sampling import Sample
 from concio.studies.study_rows import Row, Tables, Task
 
 DESCRIPTION, SAMPLE, ROWS = "study.json", "sample.csv", "rows.jsonl"
+FILE_KEYS = ("blocks_file", "solids_file", "file")
+"""Keys of a model file that name another file, which decides rows as well."""
 SYNC = 0.5
 """Seconds after which written rows are forced to the disk."""
 
@@ -63,19 +66,68 @@ def describe(task: Task, sample: Sample) -> dict[str, Any]:
         "rows": len(sample),
         "numbers": hashlib.sha256(sample.numbers.tobytes()).hexdigest(),
     }
+    files = _files(task)
+    if files:
+        told["files"] = files
     text = json.dumps(told, sort_keys=True, default=str)
     return {**told, "fingerprint": hashlib.sha256(text.encode()).hexdigest()}
 
 
 def _function(function: Any) -> str:
-    """Return name and code of a function, as far as Python knows them; of an object, what it says of itself."""
+    """Return name and code of a function, as far as Python knows them; of a dataclass, the same of its fields."""
+    if is_dataclass(function) and not isinstance(function, type):
+        parts = {f.name: getattr(function, f.name) for f in fields(function)}
+        told = ", ".join(f"{k}={_function(v) if callable(v) else repr(v)}" for k, v in parts.items())
+        return f"{type(function).__qualname__}({told})"
     if not hasattr(function, "__qualname__"):
-        return repr(function) if is_dataclass(function) else type(function).__qualname__
+        return type(function).__qualname__
     try:
         code = hashlib.sha256(inspect.getsource(function).encode()).hexdigest()[:16]
     except (OSError, TypeError):
         code = "without source"
     return f"{function.__module__}.{function.__qualname__} {code}"
+
+
+def _files(task: Task) -> dict[str, str]:
+    """Return the files that the model file names, and those that they name, each with a hash of what it holds."""
+    if not isinstance(task.source, Tables):
+        return {}
+    found: dict[str, str] = {}
+    folder = Path(task.source.folder)
+    for name in _named(task.source.data):
+        _add_file(folder / name, found)
+    for v, places in zip(task.variables, task.source.places, strict=True):
+        if any(place.parts[-1] in FILE_KEYS for place in places):
+            for value in v.values:
+                _add_file(folder / str(value), found)
+    return {os.path.relpath(path, folder): told for path, told in sorted(found.items())}
+
+
+def _named(data: Any) -> Iterator[str]:
+    """Yield the names of files in the tables of a model file."""
+    if isinstance(data, Mapping):
+        for key, value in data.items():
+            if key in FILE_KEYS and isinstance(value, str):
+                yield value
+            else:
+                yield from _named(value)
+    elif isinstance(data, list | tuple):
+        for value in data:
+            yield from _named(value)
+
+
+def _add_file(path: Path, found: dict[str, str]) -> None:
+    """Add the hash of a file, and of those that it names if it is a model file; one that cannot be read fails rows."""
+    try:
+        key, content = str(path.resolve()), path.read_bytes()
+    except (OSError, ValueError):
+        return
+    if key in found:
+        return
+    found[key] = hashlib.sha256(content).hexdigest()
+    with contextlib.suppress(ValueError):
+        for name in _named(tomllib.loads(content.decode()) if path.suffix.lower() == ".toml" else {}):
+            _add_file(path.parent / name, found)
 
 
 class Store:
@@ -143,7 +195,7 @@ class Store:
             msg = "the directory holds a study already"
             raise InputError(msg, where=where, hint="resume it, or give the name of a new directory")
         if fingerprint != description["fingerprint"]:
-            changed = [k for k in description if k != "fingerprint" and _plain(description[k]) != held.get(k)]
+            changed = _changed(_plain(description), held)
             said = f" (made with concio {version})" if version != description["concio"] else ""
             msg = f"the directory holds another study{said}: {', '.join(changed) or 'something'} differs"
             raise InputError(msg, where=where, hint="give the name of a new directory; rows of both must not be mixed")
@@ -236,6 +288,13 @@ def _sample_text(sample: Sample) -> str:
         values = sample.row(index).values()
         writer.writerow([index, *(repr(v) if isinstance(v, float) else v for v in values), int(sample.seeds[index])])
     return out.getvalue()
+
+
+def _changed(told: Mapping[str, Any], held: Mapping[str, Any]) -> list[str]:
+    """Return what of a study differs from one that a directory holds; of the files beside its model, which ones."""
+    keys = [k for k in {**held, **told} if k not in ("fingerprint", "files") and told.get(k) != held.get(k)]
+    files, before = told.get("files", {}), held.get("files", {})
+    return keys + [f"'{name}'" for name in {**before, **files} if files.get(name) != before.get(name)]
 
 
 def _plain(value: Any) -> Any:

@@ -136,7 +136,8 @@ def _unanswered(study: StudyResult) -> list[str]:
         count = study.spread(o.name).unanswered
         if count:
             why = Counter(_why(study, o.name))
-            reason = f": {why.most_common(1)[0][0]}" if why else ""
+            such = ", such as" if len(why) > 1 else ""
+            reason = f"{such}: {why.most_common(1)[0][0]}" if why else ""
             found.append(f"{o.name} in {count} of {len(study)} runs{reason}")
     asked = study.required
     if asked is not None and asked.index is None:
