@@ -62,18 +62,45 @@ def test_a_block_slides_until_its_resultant_comes_to_the_edge_of_the_wall_and_ro
     way = str(rng.choice(["left", "right"]))
     side = 1.0 if way == "right" else -1.0
     resultant = (b0 + b1) / 2 + side * friction * height / 2
-    edge, corner = (high, b1) if way == "right" else (low, b0)
+    edge = high if way == "right" else low
     crushed = 0.0 if strength is None else 20.0 * (b1 - b0) * height / (2.0 * strength)
     own = slides(tuple(bodies), JointLaw(friction, compressive_strength=strength), way)
     slid = side * (edge - resultant) - crushed
-    turn, beyond = np.linspace(0.0, np.arctan(friction), 999), side * (corner - edge) + slid + crushed
-    rocks = slid + (np.cos(turn) - 1.0) * beyond + np.sin(turn) * height  # of the top corner
+    turn = np.linspace(0.0, np.arctan(friction), 999)
+    rocks = slid + ((1.0 - np.cos(turn)) * friction + np.sin(turn)) * height / 2  # of the centroid, where H acts
     assert own.followed.kind == "followed"
     assert own.followed.reason == "falls"
     assert own.followed.end == pytest.approx(rocks[-1], abs=1e-5)
     at = np.linspace(0.0, own.followed.end, 40)
     right_ones = np.interp(at, rocks, np.tan(np.arctan(friction) - turn))
     assert [own.followed.at(d) for d in at] == pytest.approx(right_ones, abs=2e-3 * friction)
+
+
+@pytest.mark.parametrize("friction", [0.05, 0.08, 0.11])
+def test_what_slides_and_then_rocks_has_no_more_displacement_than_what_rocks(friction: float) -> None:
+    """Its masses come as far as those of the block that does not slide: to where their centroid stands above the edge.
+
+    d was that of a corner at the top, which goes twice as far, and zeta_E 1.10 in place of 0.63.
+    """
+    sizes = {"ground": (-2.0, 3.0, -0.5, 0.0), "low": (0.0, 0.5, 0.0, 1.0), "top": (0.0, 0.5, 1.0, 5.0)}
+    model = Model(
+        boxes(sizes), {"block": Rigid(unit_weight=20.0)}, {"joint": JointLaw(friction)},
+        loads=(Load("weight", (0.0, -1.0)), Load("point", (0.0, -6.0), bodies=("top",), at=(0.25, 4.0))),
+    )  # fmt: skip
+    asked = {"site": SITE, "direction": "left", "mechanisms": {"top": ["top"]}}
+
+    def own(model: Model, **more: object) -> LocalMechanism:
+        found = concio.assess(model, **asked, **more)
+        return next(m for m in (*found.mechanisms, *found.others) if m.name == "top")
+
+    slides, rocks = own(model), own(replace(model, laws={"joint": JointLaw(0.5)}))
+    assert slides.multiplier == pytest.approx(friction)
+    assert slides.control[1] == pytest.approx((0.25, (40.0 * 3.0 + 6.0 * 4.0) / 46.0))
+    assert slides.d0 == pytest.approx(0.25, abs=1e-6)
+    assert slides.zeta < 1.01 * rocks.zeta
+    corner = own(model, control=("top", (0.0, 5.0)))
+    assert corner.followed.reason == "joint opens", "a corner that would outrun the masses is not followed"
+    assert corner.zeta < slides.zeta
 
 
 def test_a_push_at_large_displacements_finds_the_same() -> None:
@@ -84,7 +111,7 @@ def test_a_push_at_large_displacements_finds_the_same() -> None:
         boxes(sizes), {"block": Rigid(unit_weight=20.0)}, {"joint": JointLaw(friction)},
         loads=(Load("weight", (0.0, -1.0)), Load("weight", (1.0, 0.0), ("top",), group="live")),
     )  # fmt: skip
-    pushed = concio.push(model, control=concio.ControlPoint("top", (0.3, 1.0 + height)), until=0.4, step=0.01)
+    pushed = concio.push(model, control=concio.ControlPoint("top", (0.0, 1.0 + height / 2)), until=0.4, step=0.005)
     found = concio.assess(replace(model, loads=model.loads[:1]), site=SITE, direction="right")
     (own,) = found.mechanisms
     assert own.followed.end == pytest.approx(float(pushed.displacement[-1]), rel=1e-3)

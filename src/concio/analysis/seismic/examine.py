@@ -39,6 +39,9 @@ BARELY = 1e-3
 REACHED = 0.9
 """A curve that is cut before it comes to this share of alpha_0 is none."""
 
+STILL = 1e-6
+"""A block whose rotation moves its points by less than this share of the fastest motion slides without turning."""
+
 LONGER = 1e-9
 """Ties that get longer by less than this, as the control point moves by one, keep their length."""
 
@@ -155,7 +158,7 @@ def prepared(assembly: Assembly, found: Found, push: Push, name: str, control: C
 
     every = [(t, block_of(t.body_a), block_of(t.body_b)) for t in model.ties]
     ties = tuple((t, a, b) for t, a, b in every if a != b)
-    chosen = _control_of(assembly, found, control, number, along)
+    chosen = _control_of(assembly, found, control, number, along, [f for _, f in pushing])
     block = mechanics.of_body[number[chosen[0]]]
     at = np.array(chosen[1], dtype=float)
     forces = merged([f for _, f in dead]), merged([f for _, f in pushing])
@@ -276,9 +279,17 @@ def _as_linkage(
 
 
 def _control_of(
-    assembly: Assembly, found: Found, control: Control | None, number: Mapping[str, int], along: Array
+    assembly: Assembly,
+    found: Found,
+    control: Control | None,
+    number: Mapping[str, int],
+    along: Array,
+    pushing: Several[Force],
 ) -> Control:
-    """Return the control point: the one given where it moves, else the corner that moves fastest, furthest out."""
+    """Return the control point: the one given where it moves, else the corner that moves fastest, furthest out.
+
+    Where that slides without turning all of its points move alike: it is the centroid of what pushes it.
+    """
     assert found.mechanics is not None
     mechanics = found.mechanics
     top = float(np.abs(found.velocity).max())
@@ -297,4 +308,12 @@ def _control_of(
     ]
     fastest = max(c[0] for c in corners)
     best = max((c for c in corners if c[0] >= (1 - 1e-6) * fastest), key=lambda c: (round(c[1], 9), round(c[2], 9)))
-    return best[3], best[4]
+    block = mechanics.of_body[number[best[3]]]
+    own = [f for f in pushing if f.block == block]
+    turns = float(np.abs(mechanics.blocks[block].motion[len(along) :]).max())
+    if not own or turns * mechanics.reach([np.array(c[4]) for c in corners]) > STILL * top:
+        return best[3], best[4]
+    size = np.array([math.hypot(*f.force) for f in own])
+    point = size @ np.array([f.point for f in own]) / size.sum()
+    bodies = [assembly.model.bodies[b] for b, g in mechanics.of_body.items() if g == block]
+    return min(bodies, key=lambda b: (round(math.dist(b.centroid, point), 9), b.name)).name, tuple(point.tolist())
