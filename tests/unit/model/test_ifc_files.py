@@ -15,6 +15,7 @@ from concio.contact.detection import detect
 from concio.model.polyhedron import BOX
 from concio.model.solids.step_file import decoded
 from concio.verdict.attention import attention_of
+from concio.verdict.italian import italian
 from ifc_files import MILLIMETRE, IfcText, row
 
 CUBE = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)], dtype=float)
@@ -353,3 +354,27 @@ def test_a_coordinate_system_that_lies_on_its_side_is_refused(tmp_path: Path) ->
     f.product("stone", f.brep(CUBE, BOX))
     with pytest.raises(InputError, match=r"z axis is not upright"):
         read(f, tmp_path)
+
+
+TOLD = {
+    "boolean": boolean, "profile": circle, "arcs": arcs, "geometry": lambda f: f.add("IFCSWEPTDISKSOLID(#1)"),
+    "advanced": lambda f: f.add("IFCADVANCEDBREP(#1)"), "revolved": lambda f: f.add("IFCREVOLVEDAREASOLID(#1)"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("fault", [*TOLD, "opening", "projection", "world"])
+def test_what_was_left_out_is_said_in_italian(tmp_path: Path, fault: str) -> None:
+    """Reports in Italian had these sentences in English."""
+    f = IfcText(world=((4500.0, 1200.0, 30.0),) if fault == "world" else ())
+    f.product("stone", f.brep(CUBE, BOX))
+    if fault in TOLD:
+        f.product("other", TOLD[fault](f), kind="IFCWALL")
+    elif fault == "world":
+        f.product("empty", kind="IFCWALL")
+    else:
+        wall, part = f.product("w", f.brep(CUBE, BOX)), f.product("o", f.brep(CUBE, BOX), kind="IFCOPENINGELEMENT")
+        f.relate(f"IFCREL{'VOIDS' if fault == 'opening' else 'PROJECTS'}ELEMENT", wall, part)
+    model = read(f, tmp_path, on_fault="skip")
+    told = [line for line in attention_of(model, detect(model)) if "the drawing" in line]
+    assert told
+    assert {piece.language for line in told for piece in italian(line)} == {"it"}
