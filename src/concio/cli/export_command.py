@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
@@ -106,6 +107,9 @@ def _check_results(result: Result, to: str, *, results: bool) -> None:
 def _check_options(result: Result, to: str, target: Path, *, scale: float | None, unit: str | None) -> None:
     """Raise where an option would be left aside, and where the name of a file of solids says another format."""
     where = f"--to {to}"
+    if scale is not None and not math.isfinite(scale):
+        msg = f"--scale {scale:g} is not a finite number"
+        raise InputError(msg, hint="give what displacements are multiplied by")
     if unit is not None and (to != "dxf" or result.model.dim == 3):
         msg = "--unit is that of a DXF drawing of a plane model; all else is written in m"
         raise InputError(msg, where=where, hint="leave it out")

@@ -73,7 +73,8 @@ def write_solids(
     Raises
     ------
     InputError
-        The model is in the plane, the format is not known or has no animation, or a package is missing.
+        The model is in the plane, the format is not known or has no animation, the scale is not finite, or a package is
+        missing.
 
     Examples
     --------
@@ -88,6 +89,9 @@ def write_solids(
     ['o ground', 'o d01', 'o d02']
     """
     path = Path(path)
+    if not np.isfinite(scale):
+        msg = f"scale = {scale:g} is not a finite number"
+        raise InputError(msg, where=str(path), hint="give what displacements are multiplied by")
     writer = WRITERS.get(path.suffix.lower())
     if writer is None:
         msg = f"'{path.suffix}' is not a format of solids"

@@ -128,6 +128,8 @@ IDLE = {
     "scale of a model": (2, ("--to", "toml", "--scale", "10"), "--scale is that of displaced shapes"),
     "unit of solids": (3, ("--to", "obj", "--unit", "mm"), "--unit is that of a DXF drawing of a plane model"),
     "another format": (3, ("--to", "obj", "--out", "solids.stl"), "'solids.stl' does not end in .obj"),
+    "scale without a number": (2, ("--to", "dxf", "--scale", "nan", "--out", "solids.stl"), "--scale nan is not"),
+    "scale without end": (3, ("--to", "stl", "--scale", "inf", "--out", "solids.stl"), "--scale inf is not"),
     "no format": (3, ("--to", "stl", "--out", "solids"), "write --out solids.stl"),
 }
 

@@ -77,6 +77,13 @@ def test_a_package_with_single_precision_alone_distorts_no_block() -> None:
         _add_vertices(Path("m.3dm"), old, replace(near, points=CUBE + 4987654.32))
 
 
+def test_a_scale_that_is_no_number_writes_nothing(tmp_path: Path) -> None:
+    """Vertices were nan."""
+    with pytest.raises(InputError, match="scale = nan is not a finite number"):
+        concio.write_solids(tmp_path / "m.obj", arch(), scale=float("nan"))
+    assert not (tmp_path / "m.obj").exists()
+
+
 def test_gltf_is_what_another_reader_sees(tmp_path: Path) -> None:
     model = arch()
     concio.write_solids(tmp_path / "arch.glb", model)
