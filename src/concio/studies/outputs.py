@@ -143,7 +143,7 @@ KNOWN: dict[str, Output] = {
         Output("bridge_worst_position", "m", "worst position of the vehicle", _bridge_place, multiplies=True),
     )
 }  # fmt: skip
-"""Outputs by name; beside them ``reaction.NAME.x`` and ``reaction.NAME.y`` of a fixed body or a support [kN]."""
+"""Outputs by name; beside them ``reaction.NAME.x``, ``.y`` and, in space, ``.z`` of a fixed body or a support [kN]."""
 
 
 @dataclass(frozen=True)
@@ -161,7 +161,11 @@ class Reaction:
         if self.body not in reactions:
             msg = f"there is no fixed body or support called '{self.body}'"
             raise InputError(msg, hint=closest(self.body, list(reactions)))
-        return reactions[self.body][self.component]
+        force = reactions[self.body]
+        if self.component >= len(force):
+            msg = f"reaction.{self.body}.z: a plane model has no reaction along z"
+            raise InputError(msg, hint=f"reaction.{self.body}.y is the vertical one")
+        return force[self.component]
 
 
 @dataclass(frozen=True)
@@ -188,10 +192,10 @@ def find_output(name: str) -> Output:
         return KNOWN[name]
     if name.startswith("reaction."):
         body, _, component = name.removeprefix("reaction.").rpartition(".")
-        if body and component in ("x", "y"):
-            return Output(name, "kN", f"reaction of '{body}' along {component}", Reaction(body, "xy".index(component)))
+        if body and component in ("x", "y", "z"):
+            return Output(name, "kN", f"reaction of '{body}' along {component}", Reaction(body, "xyz".index(component)))
     msg = f"there is no output '{name}'"
-    raise InputError(msg, hint=closest(name, [*KNOWN, "reaction.NAME.x", "reaction.NAME.y"]))
+    raise InputError(msg, hint=closest(name, [*KNOWN, "reaction.NAME.x", "reaction.NAME.y", "reaction.NAME.z"]))
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""What a study that is resumed may be: the same model with the same files, asked the same."""
+"""Studies that are resumed are of the same files and asked the same; columns, reasons and reactions of their rows."""
 
 from __future__ import annotations
 
@@ -107,3 +107,12 @@ def test_reasons_that_differ_from_run_to_run_are_told_as_examples() -> None:
 def test_runs_are_counted_from_zero_everywhere() -> None:
     with pytest.raises(concio.InputError, match="1 runs have no value, the first of them run 3 "):
         sobol_indices(["a"], np.array([1.0, 2.0, 3.0, np.nan]))
+
+
+def test_reactions_of_a_structure_in_space_have_a_vertical_part() -> None:
+    plane = concio.column(width=0.5, height=2.0, blocks=1, block="rigid", unit_weight=20.0, friction=0.5)
+    for model, name in ((concio.extrude(plane), "reaction.ground.z"), (plane, "reaction.ground.y")):
+        found = concio.study(lambda values, model=model: model, {"a": {"low": 0.0, "high": 1.0}}, name, size=2)
+        assert found.values(name) == pytest.approx([20.0, 20.0])
+    found = concio.study(lambda values: plane, {"a": {"low": 0.0, "high": 1.0}}, "reaction.ground.z", size=1)
+    assert "a plane model has no reaction along z" in found.failures[0].message
