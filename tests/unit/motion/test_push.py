@@ -10,6 +10,7 @@ import pytest
 
 import concio
 from concio.analysis.motion.push_result import PushEnding
+from concio.analysis.motion.statics import Statics
 from concio.solvers.stepping.solver import StepSolver
 from models import box, model_of, weight
 from motion_models import standing
@@ -55,6 +56,36 @@ def test_mechanism_of_the_pillar_is_its_rotation_about_the_toe(pushed):
 def test_the_block_lifts_at_its_heel_and_says_so(pushed):
     kinds = [(e.kind, e.bodies, round(e.at[0], 3)) for e in pushed.events]
     assert kinds == [("opens", ("floor", "block"), -0.1)]
+
+
+def test_a_curve_is_followed_on_where_only_short_steps_arrive(pushed, monkeypatch):
+    """A sixth of the step asked for arrives: longer ones are tried again, however often, while the curve goes on."""
+    balance, whole = Statics.balance, float(np.diff(pushed.displacement).max())
+
+    def short(self, state, multiplier, *, target=None, **options):
+        found = balance(self, state, multiplier, target=target, **options)
+        return found if target is None or target < whole / 6 else replace(found, found=False)
+
+    monkeypatch.setattr(Statics, "balance", short)
+    found = concio.push(standing(0.2, 1.0))
+    assert found.ending is PushEnding.LOST
+    assert found.capacity == pytest.approx(pushed.capacity, rel=1e-9)
+    assert len(found) > 2 * len(pushed)
+
+
+def test_what_does_not_arrive_by_any_step_ends_the_curve(pushed, monkeypatch):
+    balance, tried, start = Statics.balance, [], pushed.centre[0, 1, 0]
+
+    def lost(self, state, multiplier, *, target=None, **options):
+        found = balance(self, state, multiplier, target=target, **options)
+        tried.append(target)
+        return replace(found, found=False) if found.state.centre[1, 0] - start > 0.05 else found
+
+    monkeypatch.setattr(Statics, "balance", lost)
+    found = concio.push(standing(0.2, 1.0))
+    assert found.ending is PushEnding.NO_EQUILIBRIUM
+    assert found.displacement[-1] == pytest.approx(0.05, rel=1e-5)
+    assert len(tried) < 100
 
 
 def test_left_is_the_mirror_of_right(pushed):
@@ -321,8 +352,6 @@ def test_a_push_that_another_structure_ends_does_so_on_its_own_curve():
     assert 0.08 < found.multiplier[-1] <= concio.push(model_of(floor, narrow, law=law, loads=(weight(),))).peak
     flexibility = found.displacement[1:] / found.multiplier[1:]
     assert flexibility == pytest.approx(flexibility[0], rel=5e-4)
-
-
 
 
 @pytest.mark.parametrize("dim", [2, pytest.param(3, marks=pytest.mark.long)])

@@ -10,6 +10,8 @@ import pytest
 import scipy.sparse as sp
 
 from concio.errors import InputError
+from concio.solvers.algebra.sparse_factor import SingularMatrixError
+from concio.solvers.lcp.lemke_basis import Columns, ExplicitInverse, ProductForm
 from concio.solvers.lcp.lemke_method import Outcome, equilibrate, lemke
 from concio.solvers.lcp.linear_problem import GeneralisedComplementarity, LinearComplementarity
 from lcp_oracles import infeasibility, solution
@@ -122,6 +124,17 @@ def test_no_solution_where_feasible_points_are_not_complementary() -> None:
     problem = LinearComplementarity(np.array([[0.0, 0.0], [1.0, 0.0]]), np.array([1.0, -1.0]))
     assert infeasibility(problem) is None
     assert solution(problem) is None
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("basis", [ExplicitInverse, ProductForm])
+@pytest.mark.parametrize(
+    "matrix", [np.ones((3, 3)), sp.csr_array(np.ones((3, 3))), sp.csr_array(np.diag([1.0, 1.0, 0.0]))]
+)
+def test_a_singular_basis_is_told_by_an_error_alone(basis: type, matrix: np.ndarray | sp.csr_array) -> None:
+    """Dense and sparse; nothing is printed beside what follows from it."""
+    with pytest.raises(SingularMatrixError):
+        basis(Columns(matrix, np.ones(3)), np.arange(3, 6))
 
 
 def test_limit_and_cancel_end_the_run() -> None:

@@ -130,7 +130,7 @@ class PushCurve:
 
     def by_displacement(self) -> PushEnding:
         """Let the controlled displacement grow."""
-        step, creeping, failed = FIRST * self.step, 0, 0
+        step, creeping, failed, growth = FIRST * self.step, 0, 0, GROWTH
         while len(self.states) < MOST_POINTS:
             here, d, load = self.states[-1], self.displacement[-1], self.multiplier[-1]
             if d >= self.until * (1 - 1e-12):
@@ -138,11 +138,11 @@ class PushCurve:
             wanted = min(step, self.until - d)
             found = self.statics.balance(here, load, target=wanted)
             if not found.found:
-                step, failed = 0.5 * step, failed + 1
+                step, failed, growth = 0.5 * step, failed + 1, 1.0
                 if step < SMALLEST * self.step or failed > MOST_FAILED:
                     return PushEnding.NO_EQUILIBRIUM
                 continue
-            failed = 0 if wanted >= self.step else failed
+            failed = 0 if wanted >= CREEPING * self.step else failed
             if found.multiplier > LOCKED:
                 return PushEnding.LOCKED
             gave = self._gives_way(here, found.state)
@@ -159,7 +159,7 @@ class PushCurve:
             creeping = creeping + 1 if wanted < CREEPING * min(self.step, self.until - d) else 0
             if creeping > MOST_CREEPING:
                 return PushEnding.NO_EQUILIBRIUM
-            step = FIRST * self.step if gave else min(GROWTH * step, self.step)
+            step, growth = FIRST * self.step if gave else min(growth * step, self.step), GROWTH
         self.notes.append(f"{MOST_POINTS:,} points were computed")
         return PushEnding.STOPPED
 

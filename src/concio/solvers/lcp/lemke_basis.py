@@ -17,6 +17,7 @@ import numpy as np
 import scipy.linalg as sl
 import scipy.sparse as sp
 from scipy.linalg.blas import dger
+from scipy.linalg.lapack import dgetrf
 from scipy.sparse.linalg import SuperLU, splu
 
 from concio.problem.contact_problem import Array
@@ -126,14 +127,17 @@ class ProductForm:
         self._solve: Callable[[Array], Array]
         if count > DENSE * basis.size**2:
             dense = matrix.toarray() if is_sparse(matrix) else matrix
-            factors = sl.lu_factor(dense, check_finite=False)
-            self._solve = lambda a: sl.lu_solve(factors, a, check_finite=False)
+            lu, rows, zero = dgetrf(dense)
+            if zero:
+                msg = "a pivot is zero"
+                raise SingularMatrixError(msg)
+            self._solve = lambda a: sl.lu_solve((lu, rows), a, check_finite=False)
         else:
             try:
-                lu: SuperLU = splu(sp.csc_matrix(matrix))
+                factors: SuperLU = splu(sp.csc_matrix(matrix))
             except RuntimeError as error:
                 raise SingularMatrixError(str(error)) from error
-            self._solve = lu.solve
+            self._solve = factors.solve
         self._etas: list[tuple[int, float, Array]] = []
 
     @property
