@@ -10,6 +10,7 @@ import numpy as np
 
 from concio.contact.factors import load_factor
 from concio.display import number
+from concio.errors import InputError
 from concio.verdict.attention import ALMOST, SO_WITH
 from concio.verdict.question import Acting, Question, Role
 from concio.verdict.unseen import unseen_words
@@ -62,7 +63,7 @@ def study_verdict(study: StudyResult) -> Verdict:
         meaning="Every run is a row, whatever its outcome. A structure that is proven not to stand counts as worse "
         "than any "
         "number; a run without an answer widens the interval on both sides.",
-        limits=(*_bounds(study), *(line for line in _odd(study) if ALMOST in line)),
+        limits=(*_bounds(study), *_without_indices(study), *(line for line in _odd(study) if ALMOST in line)),
         unchecked=tuple(unchecked),
         attention=(*_mixed(study), *_odd(study)),
     )
@@ -221,6 +222,17 @@ def _acting(study: StudyResult) -> tuple[Acting, ...]:
         else:
             role: Role = "constant" if factor else "not applied"
             found.append(Acting(group, what, force, sizes[group][0], factor, role))
+    return tuple(found)
+
+
+def _without_indices(study: StudyResult) -> tuple[str, ...]:
+    """Return why outputs of a sample that is made for Sobol indices have none."""
+    found = []
+    for o in study.outputs if study.sample.design == "saltelli" and len(study) else ():
+        try:
+            study.sensitivity(o.name)
+        except InputError as error:
+            found.append(f"there are no Sobol indices of {o.name}: {error.what}")
     return tuple(found)
 
 

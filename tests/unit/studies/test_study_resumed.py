@@ -116,3 +116,14 @@ def test_reactions_of_a_structure_in_space_have_a_vertical_part() -> None:
         assert found.values(name) == pytest.approx([20.0, 20.0])
     found = concio.study(lambda values: plane, {"a": {"low": 0.0, "high": 1.0}}, "reaction.ground.z", size=1)
     assert "a plane model has no reaction along z" in found.failures[0].message
+
+
+def test_sobol_indices_that_there_are_not_are_told() -> None:
+    pillar = {"column": {"width": 0.5, "height": 2.0, "blocks": 1, "block": {"kind": "rigid", "unit_weight": 20}}}
+    variables = {"width": {"keys": "column.width", "low": -0.1, "high": 1.0},
+                 "height": {"keys": "column.height", "low": 1.0, "high": 3.0}}  # fmt: skip
+    found = concio.study(pillar, variables, "max_settlement", "saltelli", size=4)
+    assert any(line.startswith("there are no Sobol indices of max_settlement: ") for line in found.verdict.limits)
+    again = concio.study(pillar, {**variables, "width": {**variables["width"], "low": 0.1}}, "reaction.ground.y",
+                         "saltelli", size=4)  # fmt: skip
+    assert not any("Sobol" in line for line in again.verdict.limits)
