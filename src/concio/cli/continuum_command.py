@@ -69,7 +69,7 @@ def continuum(
     halving: BlockHalving | None = None
     with progress_bar(shown=not json) as progress:
         if halve:
-            make = halved_file(file, engine)
+            make = halved_file(file, units, engine)
             halving = concio.halve_blocks(
                 make, own, sizes=[2**k for k in range(halve + 1)], live=live, mesh_size=size, elastic=elastic,
                 strength=strength, progress=progress,

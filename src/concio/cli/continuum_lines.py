@@ -9,6 +9,7 @@ import numpy as np
 from concio.analysis.continuum.answers import ElasticComparison, StrengthComparison
 from concio.analysis.continuum.comparison import ContinuumComparison
 from concio.analysis.continuum.halving import BlockHalving
+from concio.display import Units
 from concio.verdict.continuum_verdict import continuum_strength_words, continuum_verdict
 
 
@@ -34,17 +35,18 @@ def continuum_lines(found: ContinuumComparison, halving: BlockHalving | None) ->
     ]
     verdict = continuum_verdict(found, halving)
     lines += [verdict.headline, *verdict.lines(found.assembly.model.report)]
-    lines += [f"  elastic      none: {found.elastic_note}"] if found.elastic is None else elastic_lines(found.elastic)
+    units, elastic = found.assembly.model.report, found.elastic
+    lines += [f"  elastic      none: {found.elastic_note}"] if elastic is None else elastic_lines(elastic, units)
     if found.strength is None:
         lines.append(f"  limit load   none: {found.strength_note}")
     else:
         lines += strength_lines(found.strength)
-    return lines if halving is None else [*lines, *halving_lines(halving)]
+    return lines if halving is None else [*lines, *halving_lines(halving, units)]
 
 
-def elastic_lines(found: ElasticComparison) -> list[str]:
+def elastic_lines(found: ElasticComparison, units: Units) -> list[str]:
     """Return the elastic answers."""
-    blocks, bonded, smooth = (f"{1e3 * v:.5g} mm" for v in found.settlements)
+    blocks, bonded, smooth = (units.text("motion", v, 5) for v in found.settlements)
     far, near = found.differences
     if found.bonded is None:
         bonded = "have no answer, the supports tear blocks apart"
@@ -55,7 +57,7 @@ def elastic_lines(found: ElasticComparison) -> list[str]:
         head, apart = f"{head}; blocks {blocks}", f"{apart}blocks with joints that open and slip {100 * far:.3g} %"
         pushed = found.blocks.reactions
         lines = [
-            f"  force on wall from {name}: blocks ({_force(pushed.get(name))}), continuum ({_force(own)}) kN"
+            f"  force on wall from {name}: blocks ({_force(pushed.get(name), units)}), continuum ({_force(own, units)})"
             for name, own in found.continuum.reactions.items()
         ]
         if found.bonded is None:
@@ -65,11 +67,8 @@ def elastic_lines(found: ElasticComparison) -> list[str]:
     return [*lines, apart.rstrip(", ")] if near == near else lines
 
 
-def _force(value: Any) -> str:
-    if value is None:
-        return "none"
-    size = float(np.abs(value).max()) or 1.0
-    return ", ".join(f"{v if abs(v) > 1e-9 * size else 0.0:.5g}" for v in value)
+def _force(value: Any, units: Units) -> str:
+    return "none" if value is None else units.force_vector(value)
 
 
 def strength_lines(found: StrengthComparison) -> list[str]:
@@ -78,14 +77,16 @@ def strength_lines(found: StrengthComparison) -> list[str]:
     return [f"  limit load   {first}", *(f"               {line}" for line in rest)]
 
 
-def halving_lines(halving: BlockHalving) -> list[str]:
+def halving_lines(halving: BlockHalving, units: Units) -> list[str]:
     """Return the table of the halved blocks."""
     table = halving.table()
-    lines = ["  halving         blocks   settle [mm]   bonded [mm]  continuum [mm]  bonded apart    limit load"]
+    factor, unit = units.factor("motion")
+    heads = [f"{word} [{unit}]".rjust(14) for word in ("settle", "bonded")]
+    lines = [f"  halving         blocks{''.join(heads)}{f'continuum [{unit}]':>16}  bonded apart    limit load"]
     for k, n in enumerate(halving.sizes):
         cells = [
             f"{table['blocks'][k]:12,d}",
-            *(_cell(1e3 * table[f"settlement_{name}"][k], 14) for name in ("blocks", "bonded", "continuum")),
+            *(_cell(factor * table[f"settlement_{name}"][k], 14) for name in ("blocks", "bonded", "continuum")),
             _cell(100 * table["difference_bonded"][k], 12, " %"),
             _cell(table["limit_blocks"][k], 14),
         ]

@@ -16,8 +16,10 @@ if TYPE_CHECKING:
 STIFFNESSES = ("normal_stiffness", "tangential_stiffness")
 
 
-def halved_file(file: Path, engine: Engine | None = None) -> Callable[[int], Model]:
+def halved_file(file: Path, units: str | None = None, engine: Engine | None = None) -> Callable[[int], Model]:
     """Return ``make(n)``: the wall or panel of a file with blocks n times smaller in both directions, for an engine.
+
+    The first one, which is the file as it is, is reported in ``units``.
 
     Mortar joints become n times thinner and joints n times stiffer, so that the homogenised wall stays the same; a
     panel gets n times as many courses and blocks.
@@ -39,7 +41,7 @@ def halved_file(file: Path, engine: Engine | None = None) -> Callable[[int], Mod
 
     def make(n: int) -> Model:
         if n == 1:
-            return loaded(file, engine=engine)
+            return loaded(file, units, engine)
         tables = deepcopy(data)
         _halve(tables[kind], kind, n)
         for name in ("joints", "materials"):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -142,3 +143,23 @@ def test_bad_input_is_answered_in_a_sentence(wall, tmp_path, arguments, words):
     assert words in err
     assert "Traceback" not in err
     assert not (tmp_path / "there").exists()
+
+
+def test_all_numbers_have_the_units_that_are_asked_for(wall):
+    """Forces in N and settlements in cm are those in kN and mm times 1000 and over 10, halved blocks as well."""
+    told = {}
+    for units in ("kN, mm", "N, motion = cm"):
+        code, out, _ = run("continuum", wall, "--halve", "1", "--no-strength", "--mesh-size", "40 cm", "--units", units)
+        assert code == 0
+        told[units] = out
+    first, other = told.values()
+    assert "kN" not in other.replace("kN/m", "")
+    assert "mm" not in other
+    settled = [float(re.search(r"continuum (\S+) [mc]m;", text)[1]) for text in told.values()]
+    assert settled[1] == pytest.approx(settled[0] / 10, rel=1e-4)
+    pushed = [float(re.search(r"continuum \((\S+) k?N along x", text)[1].replace(",", "")) for text in told.values()]
+    assert pushed[1] == pytest.approx(1e3 * pushed[0], rel=1e-3)
+    rows = [re.search(r"1/2 +\d+ +(\S+)", text)[1] for text in told.values()]
+    assert float(rows[1]) == pytest.approx(float(rows[0]) / 10, rel=1e-4)
+    assert "settle [mm]" in first
+    assert "settle [cm]" in other
