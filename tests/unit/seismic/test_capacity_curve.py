@@ -68,8 +68,11 @@ class Rising:
         history = SimpleNamespace(next_event=lambda *elongations: None)
         return SimpleNamespace(
             q=q, multiplier=self.asked[-1], tie_force=np.zeros(len(self.ties)), normal_force=np.zeros(0),
-            history=history, elongation=np.zeros(len(self.ties)),
+            history=history, elongation=np.zeros(len(self.ties)), velocity=np.zeros((1, 3)),
         )  # fmt: skip
+
+    def masses(self, first: np.ndarray, q: SimpleNamespace) -> float:
+        return float(q.d)
 
     def room(self, state: SimpleNamespace) -> float:
         return math.inf

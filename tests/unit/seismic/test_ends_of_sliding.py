@@ -99,7 +99,11 @@ def test_what_slides_and_then_rocks_has_no_more_displacement_than_what_rocks(fri
     assert slides.d0 == pytest.approx(0.25, abs=1e-6)
     assert slides.zeta < 1.01 * rocks.zeta
     asked["direction"] = "-x"
-    assert own(concio.extrude(model)).zeta == pytest.approx(slides.zeta, rel=0.03)  # steps are long where it rocks
+    solid = concio.extrude(model)
+    assert own(solid).zeta == pytest.approx(slides.zeta, rel=0.03)  # steps are long where it rocks
+    outrun = own(solid, control=("top", (0.0, 0.0, 5.0)))
+    assert outrun.followed.reason == "outruns"
+    assert outrun.zeta < 1.01 * slides.zeta
     asked["direction"] = "left"
     corner = own(model, control=("top", (0.0, 5.0)))
     assert corner.followed.reason == "joint opens", "a corner that would outrun the masses is not followed"

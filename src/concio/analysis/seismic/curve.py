@@ -30,6 +30,7 @@ REASONS = {
     "not asked": "no limit state asks for it",
     "no state": "no collapse state is found from which to continue; equilibria beyond are ignored",
     "jams": "its blocks jam and the multiplier rises far above alpha_0; equilibria beyond are ignored",
+    "outruns": "its control point moves further than the masses from there on; equilibria beyond are ignored",
     "long": "too many changes of its joints to follow; equilibria beyond are ignored",
 }
 """Why a curve ends where it ends."""

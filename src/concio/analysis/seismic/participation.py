@@ -14,17 +14,45 @@ times alpha. With delta the displacement of its point of application along the p
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from concio.analysis.seismic.linkage import Force
-from concio.analysis.seismic.macro_blocks import Mechanics
+from concio.analysis.seismic.macro_blocks import Mechanics, carried
 from concio.contact.applied import applied_forces
 from concio.model.model import Model
 
 Array = np.ndarray
+
+
+def moved_of_masses(
+    push: Sequence[Force], mechanics: Mechanics, first: Array, went: Callable[[Force], Array]
+) -> float:
+    """Return by how much the masses have moved, as a displacement of the control point [m].
+
+    While all move as they did at rest it is that of the control point, and d above holds. Masses that slide move like
+    every point; as they rock, a corner at the top goes twice as far as their centroid.
+
+    Parameters
+    ----------
+    push : sequence of Force
+        P + Q.
+    mechanics : Mechanics
+    first : (G, 3 or 6) array
+        The motion at rest, of a control point that moves by one.
+    went : callable
+        Returns the displacement (d,) of the point of a force [m].
+    """
+    moved = sums = 0.0
+    for force in push:
+        size = math.hypot(*force.force)
+        arm = force.point - mechanics.blocks[force.block].centre
+        delta = float(carried(first[force.block], arm) @ force.force)
+        moved += delta * float(went(force) @ force.force) / size
+        sums += delta**2 / size
+    return moved / sums if sums else math.inf
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,7 +14,8 @@ import numpy as np
 
 from concio.analysis.seismic.curve import CapacityCurve, follow
 from concio.analysis.seismic.linkage import Linkage, Point
-from concio.analysis.seismic.macro_blocks import GROUND, MacroJoint, carried
+from concio.analysis.seismic.macro_blocks import GROUND, MacroJoint
+from concio.analysis.seismic.participation import moved_of_masses
 from concio.kinematics.frames import turned
 
 Array = np.ndarray
@@ -62,21 +63,13 @@ def followed_on(linkage: Linkage, curve: CapacityCurve) -> CapacityCurve:
 
 
 def _outruns(linkage: Linkage, start: Array, rest: CapacityCurve) -> bool:
-    """Return whether the control point moves further, on a curve that goes on from ``start``, than the masses do.
-
-    The spectral displacement is that of the control point times a factor of the motion at rest (C8.7.1.5). Masses that
-    slide move like every point; as they rock, a corner at the top goes twice as far as their centroid.
-    """
-    first = linkage.velocity(np.zeros_like(start)).reshape(-1, 3)
-    end, moved, sums = rest.points[-1].q, 0.0, 0.0
-    for force in linkage.push:
-        arm = force.point - linkage.mechanics.blocks[force.block].centre
-        delta = float(carried(first[force.block], arm) @ force.force)
-        went = linkage.went(end, force.block, force.point) - linkage.went(start, force.block, force.point)
-        size = float(np.linalg.norm(force.force))
-        moved += delta * float(went @ force.force) / size
-        sums += delta**2 / size
-    return moved < (1.0 - SAME) * sums * float(rest.displacement[-1] - rest.displacement[0])
+    """Return whether the control point moves further, on a curve that goes on from ``start``, than the masses do."""
+    first, end = linkage.velocity(np.zeros_like(start)).reshape(-1, 3), rest.points[-1].q
+    moved = moved_of_masses(
+        linkage.push, linkage.mechanics, first,
+        lambda force: linkage.went(end, force.block, force.point) - linkage.went(start, force.block, force.point),
+    )  # fmt: skip
+    return moved < (1.0 - SAME) * float(rest.displacement[-1] - rest.displacement[0])
 
 
 def _rocking(linkage: Linkage, last: Point) -> Linkage | None:

@@ -21,6 +21,8 @@ from concio.analysis.seismic.curve import FARTHEST, CapacityCurve, not_followed
 from concio.analysis.seismic.linkage import Force
 from concio.analysis.seismic.macro_blocks import GROUND, Mechanics, carried
 from concio.analysis.seismic.macro_contacts import on_blocks, problem_of
+from concio.analysis.seismic.participation import moved_of_masses
+from concio.analysis.seismic.tie_events import tie_event
 from concio.analysis.seismic.tie_history import TieHistory
 from concio.contact.face_points import FacePoints, Standing, Stated, stated
 from concio.kinematics.rigid import motions
@@ -55,8 +57,8 @@ SLIGHT = 1e-3
 """Contacts that press are put back by moves that change them by more than this share of the move: of many conditions
 that say the same, the directions left over turn a little in a finite step, and must not be taken for conditions."""
 
-LOCATED, SHARP = 60, 1e-9
-"""Trials at most for a configuration in which a tie yields or breaks, and how nearly its elongation is met."""
+OUTRUN = 0.95
+"""Share of the displacement of the control point, seen as one of the masses, below which these must not fall behind."""
 
 LOST = 1e-3
 """Share of the size of the mechanism by which a step may leave contacts wrong after it was corrected."""
@@ -152,6 +154,15 @@ class Sequence:
         """Return the displacement of the control point [m]."""
         block, point, along = self.control
         return float((q.carry(np.array([block]), point[None])[0] - point) @ along)
+
+    def masses(self, first: Array, q: Standing) -> float:
+        """Return by how much the masses have moved, as a displacement of the control point [m]."""
+
+        def went(force: Force) -> Array:
+            point: Array = q.carry(np.array([force.block]), force.point[None])[0] - force.point
+            return point
+
+        return moved_of_masses(self.push, self.mechanics, first, went)
 
     def elongations(self, q: Standing) -> Array:
         """Return the elongations (n,) of the ties [m]."""
@@ -294,7 +305,7 @@ def follow_in_steps(sequence: Sequence, onset: float = np.inf) -> CapacityCurve:
     state = sequence.state(sequence.at_rest(), sequence.contacts.force)
     if state is None:
         return not_followed("no state")
-    first = state.multiplier
+    first, began = state.multiplier, state.velocity
     costly = state.q.centre.shape[1] == 3
     d, alpha, ties = [0.0], [first], [state.tie_force]
     broken: list[float] = []
@@ -303,7 +314,7 @@ def follow_in_steps(sequence: Sequence, onset: float = np.inf) -> CapacityCurve:
     while d[-1] < FARTHEST * L:
         tried = max(min(step, sequence.room(state)), 1e-3 * step)
         q = sequence.step(state, tried)
-        event = None if q is None else _tie_event(sequence, state, q, tried)
+        event = None if q is None else tie_event(sequence, state, q, tried)
         if event is not None:
             q, tried = event.q, event.length
         after = None if q is None else sequence.state(q, state.normal_force, state.history)
@@ -318,6 +329,9 @@ def follow_in_steps(sequence: Sequence, onset: float = np.inf) -> CapacityCurve:
             end, reason = d[-1], "jams"
             break
         at = sequence.controlled(after.q)
+        if sequence.masses(began, after.q) < OUTRUN * at:
+            end, reason = d[-1], "outruns"
+            break
         if overshot:
             share = state.multiplier / (state.multiplier - after.multiplier)
             end, reason = d[-1] + share * (at - d[-1]), "falls"
@@ -350,41 +364,3 @@ def follow_in_steps(sequence: Sequence, onset: float = np.inf) -> CapacityCurve:
     return CapacityCurve(
         "steps", np.array(d), ratio * np.array(alpha), end, reason, tuple(broken), np.array(ties), reduced=ratio
     )
-
-
-@dataclass(frozen=True, eq=False)
-class TieEvent:
-    """A configuration in which a tie yields or breaks, ``length`` [m] after the last."""
-
-    q: Standing
-    length: float
-    tie: int
-    breaks: bool
-
-
-def _tie_event(sequence: Sequence, last: State, q: Standing, length: float) -> TieEvent | None:
-    """Return the first yielding or breaking of a tie within a step that leads to ``q``; None where there is none."""
-    bars = [tie for tie, _, _ in sequence.ties]
-    event = last.history.next_event(bars, last.elongation, sequence.elongations(q)) if bars else None
-    if event is None:
-        return None
-    low, high, at = 0.0, length, q
-    for _ in range(LOCATED):
-        k, limit, _ = event
-        slope = (sequence.elongations(at)[k] - last.elongation[k]) / high
-        guess = (limit - last.elongation[k]) / slope
-        middle = guess if low < guess < high else (low + high) / 2
-        there = sequence.step(last, middle)
-        if there is None:
-            break
-        reached = sequence.elongations(there)
-        sooner = last.history.next_event(bars, last.elongation, reached)
-        if sooner is None:
-            low = middle
-            if abs(reached[k] - limit) <= SHARP * abs(limit):
-                return TieEvent(there, middle, k, event[2])
-        else:
-            high, at, event = middle, there, sooner
-            if abs(reached[sooner[0]] - sooner[1]) <= SHARP * abs(sooner[1]):
-                break
-    return TieEvent(at, high, event[0], event[2])
