@@ -275,7 +275,7 @@ def _part_step(
         solution = solve_near(problem, *near, starts=starts, progress=progress)
         if solution.solved or solution.status is Status.CANCELLED or not needed(problem):
             return solution
-    first = int(part.unknowns.min(initial=problem.unknowns))
+    first = int(part.unknowns[0]) if part.unknowns.size else -1
     solution = engine.solve(
         problem, homotopy=False, starts=starts, near=near, newton=first not in curved, progress=progress
     )

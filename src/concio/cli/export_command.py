@@ -90,7 +90,8 @@ def _without_an_answer(result: Result, to: str, scale: float) -> str:
         held = "Displacements, stresses and forces are left out"
         held += "; 'velocity' is the mechanism." if to == "vtu" and result.mechanism is not None else "."
     elif result.mechanism is not None:
-        held = f"The blocks are displaced by {scale:g} times the velocities of the mechanism [m]."
+        times = "" if scale == 1 else f"{scale:g} times "
+        held = f"The blocks are displaced by {times}the velocities of the mechanism [m]."
     else:
         held = "The blocks are displaced as in the last iteration, which is no answer."
     return f"{result.status.value} {held}"

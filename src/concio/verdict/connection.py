@@ -58,9 +58,14 @@ def _first(names: list[str], most: int = 3) -> str:
     return ", ".join(f"'{name}'" for name in names[:most]) + more
 
 
+def held_bodies(model: Model) -> set[str]:
+    """Return the names of the bodies at which a tie or a support acts."""
+    return {name for tie in model.ties for name in (tie.body_a, tie.body_b)} | {s.body for s in model.supports}
+
+
 def _hanging(model: Model, detection: Detection) -> list[str]:
     """Return a sentence on the blocks in space that touch others, none of which is under them to any degree."""
-    held = {tie.body_a for tie in model.ties} | {tie.body_b for tie in model.ties} | {s.body for s in model.supports}
+    held = held_bodies(model)
     joints = detection.interfaces
     touched = {k for joint in joints for k in (joint.a, joint.b)}
     borne = {p.b for p in joints if p.normal[2] > BEARS}

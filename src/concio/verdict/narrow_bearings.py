@@ -12,11 +12,12 @@ from concio.model.interfaces.detect import Detection, Interface
 from concio.model.interfaces.patch import Patch
 from concio.model.model import Model
 from concio.model.polyhedron import Polyhedron
+from concio.verdict.connection import held_bodies
 
 NARROW = 0.01
 """Bearings are wider [m]."""
 SHARE = 0.02
-"""Bearings are wider than this share of the thickness of a block; the ends of mortar films are as narrow as these."""
+"""Narrower bearings are reported below this share of the thickness of a block: ends of mortar films are as narrow."""
 UPWARDS = 0.3
 """A joint whose normal rises by less carries no block from below."""
 MOST_NAMES = 3
@@ -38,7 +39,11 @@ def narrow_bearings(model: Model, detection: Detection) -> tuple[str, ...]:
         if abs(up) > UPWARDS:
             carried, carries = (face.b, face.a) if up > 0 else (face.a, face.b)
             bearings[carried][carries] += _width(face)
-    widest = {b: max(own.values()) for b, own in sorted(bearings.items()) if model.bodies[b].kind != "fixed"}
+    held = held_bodies(model)
+    widest = {
+        b: max(own.values()) for b, own in sorted(bearings.items())
+        if model.bodies[b].kind != "fixed" and model.bodies[b].name not in held
+    }  # fmt: skip
     found = [
         f"'{model.bodies[b].name}' ({width:.3g} m)"
         for b, width in widest.items()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -232,6 +233,28 @@ def test_newtons_method_is_left_out_of_steps_in_space_once_it_does_not_arrive(mo
     assert [newton for newton, _ in seen] == [k <= first for k in range(len(seen))]
 
 
+def test_parts_that_take_iterations_are_known_by_their_first_unknowns(monkeypatch) -> None:
+    """Of three parts the last two take them: Newton's method is left out of their next steps, and not of the first."""
+    tried = []
+
+    def solve(problem, **options):
+        tried.append(options["newton"])
+        return SimpleNamespace(solved=True, iterations=problem.iterations)
+
+    monkeypatch.setattr(stepping, "needed", lambda problem: False)
+    monkeypatch.setattr(stepping, "own", lambda part, *state: state)
+    monkeypatch.setattr(stepping.engine, "solve", solve)
+    parts = [
+        SimpleNamespace(problem=SimpleNamespace(dim=3, iterations=k, unknowns=6), unknowns=np.arange(6 * k, 6 * k + 6))
+        for k in range(3)
+    ]
+    state, curved = SimpleNamespace(displacement=0, normal_force=0, friction_force=0), set()
+    for part in (*parts, *parts):
+        stepping._part_step(part, state, curved, None, 0)
+    assert curved == {6, 12}
+    assert tried == [True, True, True, True, False, False]
+
+
 def test_settling_stops_where_every_round_contradicts_more_pairs(monkeypatch) -> None:
     """From points that are none, on a wall of hundreds of pairs: fewer linear systems than with endless patience."""
     wide = concio.wall(length=3.0, height=1.5, block_size=(0.25, 0.125), friction=0.5, horizontal=0.5, mesh_size=0.125)
@@ -250,9 +273,7 @@ def test_settling_stops_where_every_round_contradicts_more_pairs(monkeypatch) ->
 
 def test_a_live_group_that_moves_supports_is_refused():
     """A multiplier multiplies loads; what the group moves would be left out of the bound without a word."""
-    model = concio.wall(
-        length=0.8, height=0.4, block_size=(0.4, 0.2), friction=0.6, horizontal=1.0, block="rigid"
-    )
+    model = concio.wall(length=0.8, height=0.4, block_size=(0.4, 0.2), friction=0.6, horizontal=1.0, block="rigid")
     moved = concio.Support("sinks", "ground", displacement=(0.0, -1e-3), group="live")
     with pytest.raises(InputError, match="moves supports"):
         concio.limit(replace(model, supports=(moved,)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -40,6 +41,22 @@ def test_a_beam_on_millimetres_is_told(bearing: float, narrow: bool) -> None:
         said = f"1 block rests on joints narrower than 0.01 m alone: 'beam' ({bearing:g} m): are these bearings meant?"
         assert found == [said]
         assert [piece.language for piece in italian(found[0])] == ["it"]
+
+
+@pytest.mark.parametrize(
+    "held",
+    [
+        {"supports": (concio.Support("prop", "beam", edge=((0.998, 0.5), (2.002, 0.5)), directions="y"),)},
+        {"ties": (concio.Tie("rod", body_a="beam", at_a=(1.5, 1.0), body_b="", at_b=(1.5, 3.0), stiffness=1e3),)},
+    ],
+)
+def test_what_a_support_or_a_tie_holds_does_not_rest_on_its_joints_alone(held: dict[str, Any]) -> None:
+    bodies = tuple(beam(0.002))
+    model = Model(
+        bodies, {"block": Rigid(20.0)}, {"joint": JointLaw(0.6)}, loads=(Load("weight", (0.0, -1.0)),)
+    )  # fmt: skip
+    assert any("rest" in line for line in concio.solve(model).verdict.attention)
+    assert not any("rests on joints" in line for line in concio.solve(replace(model, **held)).verdict.attention)
 
 
 def test_a_bearing_in_pieces_and_a_film_are_wide_enough() -> None:

@@ -83,8 +83,8 @@ def assess(
     confidence : float, optional
         Another confidence factor.
     control : (body, point), optional
-        Control point of the mechanisms that it moves in; by default the point that moves fastest, of a block that
-        slides the centroid of what pushes it.
+        Control point of the mechanisms that it moves in; by default the point that moves fastest; where a
+        block slides, the centroid of the forces that push it.
     limits : mapping, optional
         For a limit state, the largest displacement of the control point [m], where a floor loses its bearing say.
     curve : {"followed", "straight"}

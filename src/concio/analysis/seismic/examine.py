@@ -17,7 +17,7 @@ from concio.analysis.seismic.linkage import Force, Linkage, merged
 from concio.analysis.seismic.local_mechanism import LocalMechanism
 from concio.analysis.seismic.macro_blocks import GROUND, Mechanics, carried
 from concio.analysis.seismic.macro_contacts import contacts_of
-from concio.analysis.seismic.participation import Chain, Participant, gathered
+from concio.analysis.seismic.participation import Chain, Participant, along_force, gathered
 from concio.analysis.seismic.rocking_on import followed_on
 from concio.analysis.seismic.sequence import Sequence, follow_in_steps
 from concio.analysis.seismic.site import Site
@@ -171,13 +171,8 @@ def prepared(assembly: Assembly, found: Found, push: Push, name: str, control: C
         linkage, alpha, motion, unfollowed = _as_linkage(mechanics, forces, ties, (block, at, along), alpha, motion)
     motion = motion / float(carried(motion[block], at - mechanics.blocks[block].centre) @ along)
     chain = Chain(
-        tuple(
-            Participant(f.block, kind, f.force, f.point,
-                        float(carried(motion[f.block], f.point - mechanics.blocks[f.block].centre) @ f.force)
-                        / math.hypot(*f.force))
-            for kind, f in pushing
-        )
-    )  # fmt: skip
+        tuple(Participant(f.block, kind, f.force, f.point, along_force(f, mechanics, motion)) for kind, f in pushing)
+    )
     less, stretched = _not_together(mechanics, motion, ties, chain)
     return Prepared(
         name, push, assembly, found, dead, pushing, ties, (chosen[0], tuple(at.tolist())), linkage, sequence,

@@ -27,6 +27,12 @@ from concio.model.model import Model
 Array = np.ndarray
 
 
+def along_force(force: Force, mechanics: Mechanics, motion: Array) -> float:
+    """Return the displacement of the point of a force along it [m], of a motion (G, 3 or 6) of the macro-blocks."""
+    arm = force.point - mechanics.blocks[force.block].centre
+    return float(carried(motion[force.block], arm) @ force.force) / math.hypot(*force.force)
+
+
 def moved_of_masses(
     push: Sequence[Force], mechanics: Mechanics, first: Array, went: Callable[[Force], Array]
 ) -> float:
@@ -47,11 +53,9 @@ def moved_of_masses(
     """
     moved = sums = 0.0
     for force in push:
-        size = math.hypot(*force.force)
-        arm = force.point - mechanics.blocks[force.block].centre
-        delta = float(carried(first[force.block], arm) @ force.force)
-        moved += delta * float(went(force) @ force.force) / size
-        sums += delta**2 / size
+        delta = along_force(force, mechanics, first)
+        moved += delta * float(went(force) @ force.force)
+        sums += delta**2 * math.hypot(*force.force)
     return moved / sums if sums else math.inf
 
 

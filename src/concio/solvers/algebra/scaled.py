@@ -313,8 +313,8 @@ def scale(problem: ContactProblem) -> Scaled:
 def _matrices(problem: ContactProblem, engine: Engine) -> tuple[float, sp.csr_array, sp.csr_array, BlockFactor]:
     """Return the typical stiffness, K over it, C interleaved, and a factor that has made nothing yet.
 
-    The matrix is put in order once for a structure, however often and by whatever it is solved, and under whatever
-    loads, unless its entries have been changed: that takes as long as some factorisations.
+    The matrix is put in order once for problems that share their matrices, however often and by whatever they are
+    solved, unless its entries have been changed: that takes as long as some factorisations.
     """
     stiffness = typical_stiffness(problem)
     K, C = sp.csr_array(problem.K * (1.0 / stiffness)), interleaved(problem)
