@@ -12,6 +12,7 @@ from concio.display import number
 from concio.errors import InputError
 from concio.plot import style
 from concio.plot.diagram import diagram_axes, dress_diagram
+from concio.studies.statistics import alike
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,9 +22,6 @@ if TYPE_CHECKING:
 Array = np.ndarray
 SIZE = (6.4, 4.2)
 """Width and height of a new figure [in]."""
-
-ROUNDING = 1e-10
-"""Values that differ by less than this share of them stand in one bar."""
 JITTER = 0.04
 """Height by which points of yes and no are spread, so that they can be distinguished."""
 
@@ -67,8 +65,7 @@ class StudyPlots:
         values = self.study.values(output)
         known = values[np.isfinite(values)]
         if len(known):
-            alike = np.ptp(known) <= ROUNDING * np.abs(known).max()
-            ax.hist(known, bins=1 if alike else "auto", color=style.BLOCK, edgecolor=style.EDGE)
+            ax.hist(known, bins=1 if alike(known) else "auto", color=style.BLOCK, edgecolor=style.EDGE)
         if threshold is not None:
             ax.axvline(threshold, color=style.TENSION.colour, ls="--", lw=1.2)
         of = f"{len(known)} of {len(values)} runs" if len(known) < len(values) else f"{len(known)} runs"

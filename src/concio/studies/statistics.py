@@ -320,10 +320,12 @@ def sobol_indices(names: Sequence[str], values: Array, seed: int = 0) -> Sensiti
     without = ~np.isfinite(values)
     if without.any():
         first = int(np.flatnonzero(without)[0])
-        msg = f"{without.sum()} runs have no value, the first of them run {first}"
-        raise InputError(msg, hint="Sobol indices need a finite number of every run: look at these rows")
+        count = int(without.sum())
+        several = f"{count:,} runs have no value, the first of them run {first}"
+        msg = f"run {first} has no value" if count == 1 else several
+        raise InputError(msg, hint="Sobol indices need a finite number of every run: look at the rows without one")
     if alike(values):
-        msg = "all runs give the same value: there is no variance to share"
+        msg = "all runs give the same value, and there is no variance to share"
         raise InputError(msg)
     try:
         from SALib.analyze import sobol

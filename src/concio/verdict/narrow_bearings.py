@@ -51,7 +51,7 @@ def narrow_bearings(model: Model, detection: Detection) -> tuple[str, ...]:
     ]
     if not found:
         return ()
-    more = f"; and {len(found) - MOST_NAMES:,} more" if len(found) > MOST_NAMES else ""
+    more = f" and {len(found) - MOST_NAMES:,} more" if len(found) > MOST_NAMES else ""
     rest = counted(len(found), "block rests", "blocks rest")
     return (
         f"{rest} on joints narrower than {NARROW:g} m alone: {'; '.join(found[:MOST_NAMES])}{more}: "

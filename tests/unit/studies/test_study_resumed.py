@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from concio.io.csv_table import write_csv
 from concio.studies import store
 from concio.studies.outputs import Computed, find_output
 from concio.studies.statistics import rank_correlations, sobol_indices
+from concio.verdict.italian import italian
 
 PIER = """
 [column]
@@ -105,8 +107,27 @@ def test_reasons_that_differ_from_run_to_run_are_told_as_examples() -> None:
 
 
 def test_runs_are_counted_from_zero_everywhere() -> None:
-    with pytest.raises(concio.InputError, match="1 runs have no value, the first of them run 3 "):
+    with pytest.raises(concio.InputError, match=r"^run 3 has no value \("):
         sobol_indices(["a"], np.array([1.0, 2.0, 3.0, np.nan]))
+    with pytest.raises(concio.InputError, match="2 runs have no value, the first of them run 1 "):
+        sobol_indices(["a"], np.array([1.0, np.nan, 3.0, np.nan]))
+
+
+def test_why_there_are_no_sobol_indices_is_said_in_italian(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Names of reactions have full stops, and stayed in English sentences."""
+    told = []
+    monkeypatch.setitem(sys.modules, "SALib.analyze", None)
+    for values in ([1.0, 2.0, 3.0, np.nan], [1.0, np.inf, np.nan, 2.0], [1.0, 1.0, 1.0, 1.0], [1.0, 2.0, 3.0, 4.0]):
+        with pytest.raises(concio.InputError) as caught:
+            sobol_indices(["a"], np.array(values))
+        told.append(caught.value.what)
+    assert [what.count(":") for what in told] == [0, 0, 0, 0]
+    for what in (*told, "only 3 of 8 runs have ended"):
+        line = f"there are no Sobol indices of reaction.ground.x: {what}"
+        for sentence in (line, f"T{line[1:]}."):
+            said = italian(sentence)
+            assert [piece.language for piece in said] == ["it"], sentence
+            assert "indici di Sobol di reaction.ground.x: " in said[0].text
 
 
 def test_reactions_of_a_structure_in_space_have_a_vertical_part() -> None:

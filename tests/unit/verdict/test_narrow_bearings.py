@@ -85,5 +85,7 @@ def test_several_are_counted() -> None:
     ]  # fmt: skip
     found = told(*rows)[0]
     assert found.startswith("5 blocks rest on joints narrower than 0.01 m alone: 'beam0' (0.002 m); 'beam1'")
-    assert "; and 2 more: are these" in found
-    assert [piece.language for piece in italian(found)] == ["it"]
+    assert "'beam2' (0.002 m) and 2 more: are these" in found
+    said = italian(found)
+    assert [piece.language for piece in said] == ["it"]
+    assert "'beam2' (0.002 m) e altri 2: sono appoggi voluti?" in said[0].text
