@@ -12,7 +12,7 @@ from concio.display import number
 from concio.errors import InputError
 from concio.plot import style
 from concio.plot.diagram import diagram_axes, dress_diagram
-from concio.studies.statistics import alike
+from concio.problem.tolerances import SAME_VALUE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -65,7 +65,8 @@ class StudyPlots:
         values = self.study.values(output)
         known = values[np.isfinite(values)]
         if len(known):
-            ax.hist(known, bins=1 if alike(known) else "auto", color=style.BLOCK, edgecolor=style.EDGE)
+            alike = np.ptp(known) <= SAME_VALUE * np.abs(known).max()
+            ax.hist(known, bins=1 if alike else "auto", color=style.BLOCK, edgecolor=style.EDGE)
         if threshold is not None:
             ax.axvline(threshold, color=style.TENSION.colour, ls="--", lw=1.2)
         of = f"{len(known)} of {len(values)} runs" if len(known) < len(values) else f"{len(known)} runs"

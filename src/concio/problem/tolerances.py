@@ -150,3 +150,11 @@ DEAD_POWER = 1e-6
 
 BONDED_LEFT = 1e-8
 """Residual of the linear equations above which a wall whose joints all stick has no state."""
+
+# -- studies --------------------------------------------------------------------------------------------------------
+
+SAME_VALUE = 1e-10
+"""Values of an output that differ by less than this share of them are the same: what differs is rounding."""
+
+NO_REACTION = 1e-12
+"""Share of the largest force of all reactions below which a component of one is zero."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from concio.arguments import closest
 from concio.errors import InputError, NoEquilibriumError
 from concio.problem.solution import PROVEN_FAILURES, Status
+from concio.problem.tolerances import NO_REACTION
 from concio.studies.analyses import Analyses
 
 if TYPE_CHECKING:
@@ -154,7 +155,7 @@ class Reaction:
     component: int
 
     def __call__(self, a: Analyses) -> float:
-        """Return the force on the structure [kN]."""
+        """Return the force on the structure [kN]; zero where it is no more than rounding of the reactions."""
         if not _solved(a.result):
             return NAN
         reactions = a.result.reactions
@@ -165,7 +166,8 @@ class Reaction:
         if self.component >= len(force):
             msg = f"reaction.{self.body}.z: a plane model has no reaction along z"
             raise InputError(msg, hint=f"reaction.{self.body}.y is the vertical one")
-        return force[self.component]
+        largest = max(abs(part) for one in reactions.values() for part in one)
+        return force[self.component] if abs(force[self.component]) > NO_REACTION * largest else 0.0
 
 
 @dataclass(frozen=True)

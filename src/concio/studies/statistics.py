@@ -10,11 +10,9 @@ from typing import Any
 import numpy as np
 
 from concio.errors import InputError
+from concio.problem.tolerances import SAME_VALUE
 
 Array = np.ndarray
-
-ROUNDING = 1e-10
-"""Values of an output that differ by less than this share of them are the same: what differs is rounding."""
 
 
 @dataclass(frozen=True)
@@ -292,7 +290,7 @@ class Sensitivity:
 
 def alike(values: Array) -> bool:
     """Return whether finite values (n,) differ by no more than rounding."""
-    return bool(np.ptp(values) <= ROUNDING * np.abs(values).max())
+    return bool(np.ptp(values) <= SAME_VALUE * np.abs(values).max())
 
 
 def _tied(values: Array) -> Array:
@@ -301,7 +299,7 @@ def _tied(values: Array) -> Array:
     ordered = values[order]
     with np.errstate(invalid="ignore"):  # infinite less infinite
         steps = np.diff(ordered)
-        apart = np.where(np.isfinite(steps), steps > ROUNDING * np.abs(ordered[1:]), ordered[1:] != ordered[:-1])
+        apart = np.where(np.isfinite(steps), steps > SAME_VALUE * np.abs(ordered[1:]), ordered[1:] != ordered[:-1])
     starts = np.concatenate([[True], apart])[: len(ordered)]
     first = np.maximum.accumulate(np.where(starts, np.arange(len(ordered)), 0))
     tied: Array = np.empty_like(ordered)

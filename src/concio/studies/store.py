@@ -10,25 +10,27 @@ from __future__ import annotations
 import contextlib
 import csv
 import hashlib
-import inspect
 import io
 import json
 import os
 import time
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import asdict, fields, is_dataclass
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import concio
 from concio.errors import ConcioError, InputError
+from concio.studies.functions import function_text
 from concio.studies.sampling import Sample
 from concio.studies.study_rows import Row, Tables, Task
 
 DESCRIPTION, SAMPLE, ROWS = "study.json", "sample.csv", "rows.jsonl"
 FILE_KEYS = ("blocks_file", "solids_file", "file")
 """Keys of a model file that name another file, which decides rows as well."""
+NOT_READ = "record"
+"""The table of a model file that says how it was made."""
 SYNC = 0.5
 """Seconds after which written rows are forced to the disk."""
 
@@ -43,7 +45,7 @@ def describe(task: Task, sample: Sample) -> dict[str, Any]:
     if isinstance(task.source, Tables):
         source = {"tables": task.source.data, "keys": [[p.text for p in places] for places in task.source.places]}
     else:
-        source = {"function": _function(task.source)}
+        source = {"function": function_text(task.source)}
     told: dict[str, Any] = {
         "concio": concio.__version__,
         "source": source,
@@ -52,7 +54,7 @@ def describe(task: Task, sample: Sample) -> dict[str, Any]:
             {
                 "name": o.name,
                 "unit": o.unit,
-                "read": _function(o.read),
+                "read": function_text(o.read),
                 "meaning": o.meaning,
                 "end": o.end,
                 "event": o.event,
@@ -73,47 +75,44 @@ def describe(task: Task, sample: Sample) -> dict[str, Any]:
     return {**told, "fingerprint": hashlib.sha256(text.encode()).hexdigest()}
 
 
-def _function(function: Any) -> str:
-    """Return name and code of a function, as far as Python knows them; of a dataclass, the same of its fields."""
-    if is_dataclass(function) and not isinstance(function, type):
-        parts = {f.name: getattr(function, f.name) for f in fields(function)}
-        told = ", ".join(f"{k}={_function(v) if callable(v) else repr(v)}" for k, v in parts.items())
-        return f"{type(function).__qualname__}({told})"
-    if not hasattr(function, "__qualname__"):
-        return type(function).__qualname__
-    try:
-        code = hashlib.sha256(inspect.getsource(function).encode()).hexdigest()[:16]
-    except (OSError, TypeError):
-        code = "without source"
-    return f"{function.__module__}.{function.__qualname__} {code}"
-
-
 def _files(task: Task) -> dict[str, str]:
     """Return the files that the model file names, and those that they name, each with a hash of what it holds."""
     if not isinstance(task.source, Tables):
         return {}
     found: dict[str, str] = {}
-    folder = Path(task.source.folder)
+    folder = Path(task.source.folder).resolve()
     for name in _named(task.source.data):
         _add_file(folder / name, found)
     for v, places in zip(task.variables, task.source.places, strict=True):
         if any(place.parts[-1] in FILE_KEYS for place in places):
             for value in v.values:
                 _add_file(folder / str(value), found)
-    return {os.path.relpath(path, folder): told for path, told in sorted(found.items())}
+    return {_beside(folder, path): told for path, told in sorted(found.items())}
 
 
-def _named(data: Any) -> Iterator[str]:
-    """Yield the names of files in the tables of a model file."""
+def _beside(folder: Path, path: str) -> str:
+    """Return a path relative to a folder, both without links; as it is where it is on another drive."""
+    try:
+        return os.path.relpath(path, folder)
+    except ValueError:
+        return path
+
+
+def _named(tables: Mapping[str, Any]) -> Iterator[str]:
+    """Yield the names of files in the tables of a model file, but those of how it was made, which decide no row."""
+    yield from _names_in({key: value for key, value in tables.items() if key != NOT_READ})
+
+
+def _names_in(data: Any) -> Iterator[str]:
     if isinstance(data, Mapping):
         for key, value in data.items():
             if key in FILE_KEYS and isinstance(value, str):
                 yield value
             else:
-                yield from _named(value)
+                yield from _names_in(value)
     elif isinstance(data, list | tuple):
         for value in data:
-            yield from _named(value)
+            yield from _names_in(value)
 
 
 def _add_file(path: Path, found: dict[str, str]) -> None:

@@ -28,6 +28,7 @@ from concio.representation import short_repr
 from concio.studies.analyses import Settings
 from concio.studies.bridges import variables_of_salib
 from concio.studies.executors import check_executor, run_rows
+from concio.studies.groups import check_groups
 from concio.studies.outputs import outputs_of
 from concio.studies.sampling import Correlation, Sample, draw, given_sample
 from concio.studies.statistics import probability
@@ -252,6 +253,7 @@ def study(
     if stop is not None and stop.output not in [o.name for o in wanted]:
         msg = f"'{stop.output}' is not an output of the study"
         raise InputError(msg, where="stop", hint="outputs: " + ", ".join(o.name for o in wanted))
+    check_groups(task, made)
     path = None if directory is None else Path(directory)
     wanted_multiplier = required if required is not None else given.required
     index = None

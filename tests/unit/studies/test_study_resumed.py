@@ -12,6 +12,7 @@ import concio
 from commands import run
 from concio.io.csv_table import write_csv
 from concio.studies import store
+from concio.studies.functions import function_text
 from concio.studies.outputs import Computed, find_output
 from concio.studies.statistics import rank_correlations, sobol_indices
 from concio.verdict.italian import italian
@@ -68,10 +69,41 @@ def test_a_file_that_a_choice_names_belongs_to_the_study(tmp_path: Path) -> None
         concio.study(file, directory=tmp_path / "s", resume=True)
 
 
+def test_a_study_is_resumed_through_a_link_to_its_folder(tmp_path: Path) -> None:
+    real = tmp_path / "a" / "real"
+    real.mkdir(parents=True)
+    (real / "pier.toml").write_text(PIER)
+    (real / "parts.toml").write_text(PARTS)
+    (tmp_path / "link").symlink_to(real, target_is_directory=True)
+    concio.study(real / "parts.toml", directory=tmp_path / "s")
+    assert len(concio.study(tmp_path / "link" / "parts.toml", directory=tmp_path / "s", resume=True)) == 4
+
+
+def test_a_file_on_another_drive_keeps_its_place(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    def apart(path: str, start: object) -> str:
+        msg = "path is on mount 'D:', start on mount 'C:'"
+        raise ValueError(msg)
+
+    monkeypatch.setattr(store.os.path, "relpath", apart)
+    assert store._beside(tmp_path, "D:/pier.toml") == "D:/pier.toml"
+
+
+def test_a_drawing_that_a_model_was_made_from_is_not_read(tmp_path: Path) -> None:
+    """It was refused to resume where the drawing changed that [record] names, in the model or in a part of it."""
+    record = '[record]\nfile = "wall.dxf"\n[record.of]\nsolids_file = "wall.dxf"\n'
+    (tmp_path / "wall.dxf").write_text("a")
+    (tmp_path / "pier.toml").write_text(PIER + record)
+    file = tmp_path / "parts.toml"
+    file.write_text(PARTS + record)
+    concio.study(file, directory=tmp_path / "s")
+    (tmp_path / "wall.dxf").write_text("b")
+    assert len(concio.study(file, directory=tmp_path / "s", resume=True)) == 4
+
+
 def test_outputs_are_told_by_their_code_and_not_by_their_place_in_memory() -> None:
     for output in (find_output("max_settlement").read, find_output("joint_motion").read, Computed("m", max)):
-        assert " at 0x" not in store._function(output)
-    assert store._function(find_output("max_settlement").read) != store._function(find_output("joint_motion").read)
+        assert " at 0x" not in function_text(output)
+    assert function_text(find_output("max_settlement").read) != function_text(find_output("joint_motion").read)
 
 
 def test_columns_of_a_study_have_no_units_but_their_own(parts: Path) -> None:
@@ -95,6 +127,21 @@ def test_an_output_that_differs_by_rounding_alone_has_no_sensitivity(parts: Path
     assert abs(rank_correlations(column, placed).first[0] - 9.5 / np.sqrt(95)) < 1e-12
     with pytest.raises(concio.InputError, match="all runs give the same value"):
         sobol_indices(["a"], noise)
+
+
+def test_a_reaction_that_is_zero_but_for_rounding_has_no_sensitivity() -> None:
+    """A wall under its weight pushes nothing: what was 1e-27 of 16 kN had a rank correlation of -0.6."""
+    pier = {"column": {"width": 0.5, "height": 2.0, "blocks": 4, "block": {"kind": "rigid", "unit_weight": 20}}}
+    variables = {"width": {"keys": "column.width", "low": 0.4, "high": 0.8},
+                 "height": {"keys": "column.height", "low": 1.0, "high": 2.0}}  # fmt: skip
+    names = ("reaction.ground.x", "reaction.ground.y")
+    found = concio.study(pier, variables, names, size=8)
+    assert not found.values(names[0]).any()
+    assert not found.sensitivity(names[0]).first.any()
+    assert found.sensitivity(names[1]).first.min() > 0
+    pushed = {"column": {**pier["column"], "horizontal": 1e-6}}
+    found = concio.study(pushed, variables, names, size=8)
+    assert np.allclose(found.values(names[0]) / found.values(names[1]), -1e-6, rtol=1e-6, atol=0)
 
 
 def test_reasons_that_differ_from_run_to_run_are_told_as_examples() -> None:
