@@ -44,7 +44,6 @@ CUT = {
     "not asked": "no limit state asks for it",
     "no state": "no collapse state is found from which to continue",
     "jams": "its blocks jam and the multiplier rises far above alpha_0",
-    "outruns": "its control point moves further than the masses from there on",
     "long": "too many changes of its joints to follow",
     "far": "it does not end",
 }

@@ -102,8 +102,9 @@ def test_what_slides_and_then_rocks_has_no_more_displacement_than_what_rocks(fri
     solid = concio.extrude(model)
     assert own(solid).zeta == pytest.approx(slides.zeta, rel=0.03)  # steps are long where it rocks
     outrun = own(solid, control=("top", (0.0, 0.0, 5.0)))
-    assert outrun.followed.reason == "outruns"
-    assert outrun.zeta < 1.01 * slides.zeta
+    assert outrun.followed.reason == "falls"
+    assert outrun.d0 == pytest.approx(0.25, rel=0.03), "the masses come no further, whatever the corner does"
+    assert outrun.zeta < 1.03 * slides.zeta
     asked["direction"] = "left"
     corner = own(model, control=("top", (0.0, 5.0)))
     assert corner.followed.reason == "joint opens", "a corner that would outrun the masses is not followed"

@@ -30,7 +30,6 @@ REASONS = {
     "not asked": "no limit state asks for it",
     "no state": "no collapse state is found from which to continue; equilibria beyond are ignored",
     "jams": "its blocks jam and the multiplier rises far above alpha_0; equilibria beyond are ignored",
-    "outruns": "its control point moves further than the masses from there on; equilibria beyond are ignored",
     "long": "too many changes of its joints to follow; equilibria beyond are ignored",
 }
 """Why a curve ends where it ends."""
@@ -48,7 +47,7 @@ class CapacityCurve:
     kind : {"followed", "steps", "straight"}
         "steps": by limit analysis of the displaced macro-blocks, step by step.
     displacement : (n,) array
-        Of the control point [m], growing.
+        Of the control point [m], growing; by steps no more than that of the masses, seen as one of the control point.
     multiplier : (n,) array
         alpha.
     end : float

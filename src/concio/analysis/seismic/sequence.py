@@ -57,9 +57,6 @@ SLIGHT = 1e-3
 """Contacts that press are put back by moves that change them by more than this share of the move: of many conditions
 that say the same, the directions left over turn a little in a finite step, and must not be taken for conditions."""
 
-OUTRUN = 0.95
-"""Share of the displacement of the control point, seen as one of the masses, below which these must not fall behind."""
-
 LOST = 1e-3
 """Share of the size of the mechanism by which a step may leave contacts wrong after it was corrected."""
 
@@ -286,7 +283,7 @@ def follow_in_steps(sequence: Sequence, onset: float = np.inf) -> CapacityCurve:
     """Follow a mechanism until its multiplier vanishes.
 
     Where a tie yields or breaks on the way, that very configuration is looked for, so that the curve has its peaks and
-    its drops whatever the steps.
+    its drops whatever the steps. Where the masses fall behind the control point, the displacement is theirs.
 
     Parameters
     ----------
@@ -328,10 +325,7 @@ def follow_in_steps(sequence: Sequence, onset: float = np.inf) -> CapacityCurve:
         if not sequence.ties and after.multiplier > JAMS * (first if np.isinf(onset) else max(first, onset)):
             end, reason = d[-1], "jams"
             break
-        at = sequence.controlled(after.q)
-        if sequence.masses(began, after.q) < OUTRUN * at:
-            end, reason = d[-1], "outruns"
-            break
+        at = max(d[-1], min(sequence.controlled(after.q), sequence.masses(began, after.q)))
         if overshot:
             share = state.multiplier / (state.multiplier - after.multiplier)
             end, reason = d[-1] + share * (at - d[-1]), "falls"
