@@ -57,6 +57,10 @@ SLIGHT = 1e-3
 """Contacts that press are put back by moves that change them by more than this share of the move: of many conditions
 that say the same, the directions left over turn a little in a finite step, and must not be taken for conditions."""
 
+BEHIND = 0.01
+"""Share of their displacement by which masses may fall behind the control point: rotations that are not small do that
+in any mechanism, and the code counts the control point."""
+
 LOST = 1e-3
 """Share of the size of the mechanism by which a step may leave contacts wrong after it was corrected."""
 
@@ -283,7 +287,8 @@ def follow_in_steps(sequence: Sequence, onset: float = np.inf) -> CapacityCurve:
     """Follow a mechanism until its multiplier vanishes.
 
     Where a tie yields or breaks on the way, that very configuration is looked for, so that the curve has its peaks and
-    its drops whatever the steps. Where the masses fall behind the control point, the displacement is theirs.
+    its drops whatever the steps. Where the masses fall behind the control point by more
+    than :data:`BEHIND`, the displacement is theirs and that.
 
     Parameters
     ----------
@@ -325,7 +330,7 @@ def follow_in_steps(sequence: Sequence, onset: float = np.inf) -> CapacityCurve:
         if not sequence.ties and after.multiplier > JAMS * (first if np.isinf(onset) else max(first, onset)):
             end, reason = d[-1], "jams"
             break
-        at = max(d[-1], min(sequence.controlled(after.q), sequence.masses(began, after.q)))
+        at = max(d[-1], min(sequence.controlled(after.q), (1.0 + BEHIND) * sequence.masses(began, after.q)))
         if overshot:
             share = state.multiplier / (state.multiplier - after.multiplier)
             end, reason = d[-1] + share * (at - d[-1]), "falls"
