@@ -163,6 +163,7 @@ def test_a_load_is_clicked_asked_reported_and_survives_a_killed_server(page: Bro
         page.until("window.concio.state().document.redo")
         assert text_of(again) == file.read_text(encoding="utf-8")
         page.press("y", ctrl=True)
+        page.until("!window.concio.state().document.saved", "what was undone stands in the file: it counted as saved")
         page.press("s", ctrl=True)
         page.until("window.concio.state().document.saved")
     assert file.read_text(encoding="utf-8") == text

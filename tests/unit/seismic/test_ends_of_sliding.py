@@ -105,6 +105,12 @@ def test_what_slides_and_then_rocks_has_no_more_displacement_than_what_rocks(fri
     assert outrun.followed.reason == "falls"
     assert outrun.d0 == pytest.approx(0.25, rel=0.03), "the masses come no further, whatever the corner does"
     assert outrun.zeta < 1.03 * slides.zeta
+    given = own(solid, control=("top", (0.0, 0.0, 5.0)), limits={"SLV": 0.09}).limits["SLV"]
+    height = slides.control[1][1] - 1.0
+    slid = min(0.25 - friction * height, 0.09)
+    assert given.why == "given"
+    late = 0.016 * (1.0 - height / 4.0)  # it slides to the end of the step in which it comes to the edge
+    assert given.control == pytest.approx(slid + (0.09 - slid) * height / 4.0, abs=late), "what the masses do there"
     asked["direction"] = "left"
     corner = own(model, control=("top", (0.0, 5.0)))
     assert corner.followed.reason == "joint opens", "a corner that would outrun the masses is not followed"

@@ -62,6 +62,8 @@ class CapacityCurve:
         The configurations; none for a straight line.
     reduced : float
         Factor by which multipliers were reduced so that the curve begins at alpha_0 and never rises above it.
+    control : (2, k) array or None
+        How far the control point itself has moved and the displacement that counts there [m]; None where they are one.
     """
 
     kind: Literal["followed", "steps", "straight"]
@@ -73,6 +75,13 @@ class CapacityCurve:
     tie_force: Array | None = None
     points: tuple[Point, ...] = ()
     reduced: float = 1.0
+    control: Array | None = None
+
+    def within(self, given: float) -> float:
+        """Return the displacement of the curve at which the control point has moved by ``given`` [m]."""
+        if self.control is None or not given < float(self.control[0, -1]):
+            return given
+        return float(np.interp(given, *self.control))
 
     @property
     def ends(self) -> bool:

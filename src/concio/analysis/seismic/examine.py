@@ -237,7 +237,8 @@ def examined(ready: Prepared, terms: Terms, element: FreeStanding | None = None)
         rule = site.rules.tables["levels"][level]
         limit = None
         if used is not None and used.ends and rule["kind"] != "onset":
-            limit = limit_of(level, rule, used, chain.spectral, factor, terms.limits.get(level, math.inf), branch)
+            given = followed.within(terms.limits.get(level, math.inf))
+            limit = limit_of(level, rule, used, chain.spectral, factor, given, branch)
             reached[level] = limit
         checks += checks_of(site, level, z, onset=alpha * factor, limit=limit, branch=branch, start=start * factor,
                             q=terms.q)  # fmt: skip

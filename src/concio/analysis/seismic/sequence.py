@@ -310,7 +310,7 @@ def follow_in_steps(sequence: Sequence, onset: float = np.inf) -> CapacityCurve:
     first, began = state.multiplier, state.velocity
     costly = state.q.centre.shape[1] == 3
     d, alpha, ties = [0.0], [first], [state.tie_force]
-    broken: list[float] = []
+    broken, control = list[float](), [(0.0, 0.0)]
     usual, reason, end = (1e-4 if sequence.ties else 1e-3) * L, "far", float("nan")
     step, least, fresh = usual, usual, True
     while d[-1] < FARTHEST * L:
@@ -330,7 +330,9 @@ def follow_in_steps(sequence: Sequence, onset: float = np.inf) -> CapacityCurve:
         if not sequence.ties and after.multiplier > JAMS * (first if np.isinf(onset) else max(first, onset)):
             end, reason = d[-1], "jams"
             break
-        at = max(d[-1], min(sequence.controlled(after.q), (1.0 + BEHIND) * sequence.masses(began, after.q)))
+        went = sequence.controlled(after.q)
+        at = max(d[-1], min(went, (1.0 + BEHIND) * sequence.masses(began, after.q)))
+        control.append((went, at))
         if overshot:
             share = state.multiplier / (state.multiplier - after.multiplier)
             end, reason = d[-1] + share * (at - d[-1]), "falls"
@@ -361,5 +363,6 @@ def follow_in_steps(sequence: Sequence, onset: float = np.inf) -> CapacityCurve:
     ratio = onset / largest if not sequence.ties and largest > onset * (1.0 + SAME) else 1.0
     alpha[0] = min(alpha[0], onset) if ratio == 1.0 else largest
     return CapacityCurve(
-        "steps", np.array(d), ratio * np.array(alpha), end, reason, tuple(broken), np.array(ties), reduced=ratio
-    )
+        "steps", np.array(d), ratio * np.array(alpha), end, reason, tuple(broken), np.array(ties), reduced=ratio,
+        control=np.array(control).T,
+    )  # fmt: skip

@@ -258,7 +258,7 @@ class InteriorPoint:
         """Return direction and step: predictor, corrector, centrality correctors; ``floor`` is the least target."""
         products = newton.products
         gap = products.total(newton.s) / self.count
-        d = newton.direction(products.scaled(-1.0), refine=False)  # it only tells how to centre
+        d = newton.direction(products.scaled(-1.0))
         if d is None:
             return None
         step = newton.longest(d)

@@ -154,12 +154,12 @@ class NewtonStep:
         products = Products(z.t[:, 0] * z.y_n, scaling.square, residuals.room * z.p if s.any_capped else None)
         return cls(s, z, residuals, dilatancy, scaling, H, D, products, enough)
 
-    def increments(self, r: Array, b: Array, *, refine: bool = True) -> tuple[Array, Array] | None:
+    def increments(self, r: Array, b: Array) -> tuple[Array, Array] | None:
         """Return (du, dt) of K du - C'dt = r, C du + H dt = b; None if refinement fails."""
         s, pushed = self.s, times(self.D, b)
         du = s.factor.solve(r + s.pull(pushed))
         dt = pushed - times(self.D, s.along(du))
-        return self._refined(r, b, du, dt) if refine and REFINEMENTS[s.dim] else (du, dt)
+        return (du, dt) if not REFINEMENTS[s.dim] else self._refined(r, b, du, dt)
 
     def _refined(self, r: Array, b: Array, du: Array, dt: Array) -> tuple[Array, Array] | None:
         """Return a solution refined against the equations as they stand, until both are met to ``enough``."""
@@ -181,7 +181,7 @@ class NewtonStep:
             du, dt = du + x, dt + pushed - times(self.D, s.along(x))
         return kept
 
-    def direction(self, change: Products, *, refine: bool = True) -> Direction | None:
+    def direction(self, change: Products) -> Direction | None:
         """Return the direction that changes the products by ``change`` to first order."""
         s, z, r = self.s, self.z, self.residuals
         cone = CONE[s.dim]
@@ -195,7 +195,7 @@ class NewtonStep:
         pressed = None if change.q is None else np.where(s.cone.capped, change.q / r.room, 0.0)
         if pressed is not None:
             b[:, 0] -= pressed
-        found = self.increments(-r.u, b, refine=refine)
+        found = self.increments(-r.u, b)
         if found is None:
             return None
         du, dt = found
