@@ -370,7 +370,8 @@ class _Run:
         opening, slip, energy = np.zeros(count), np.zeros(count), dict(self.sums)
         for mover in self.movers:
             own = self.observer.joints_of(mover.observer, mover.structure)
-            opening[own], slip[own] = mover.observer.joint_motion(mover.state)
+            first = own >= 0  # of several joints between two bodies in space
+            opening[own[first]], slip[own[first]] = (v[first] for v in mover.observer.joint_motion(mover.state))
             for name, value in mover.observer.energies(mover.state, {}).items():
                 energy[name] = energy.get(name, 0.0) + value
         self.recorder.shot(self.state, opening, slip, energy)

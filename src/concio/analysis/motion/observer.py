@@ -16,7 +16,9 @@ from concio.contact.rows import Rows
 from concio.contact.slots import KINDS
 from concio.contact.solid_search import SolidLayout
 from concio.fem.discretisation import FIXED
-from concio.kinematics.frames import norm
+from concio.kinematics.frames import dot, norm
+from concio.kinematics.placement import Placement
+from concio.model.interfaces.patch import Patch
 from concio.model.stages import ControlPoint
 
 Array = np.ndarray
@@ -65,6 +67,7 @@ class Observer:
         self.joints = tuple((model.bodies[f.a].name, model.bodies[f.b].name) for f in reference.detection.faces)
         plane = reference.disc.dim == 2
         self._joint = {key: k for k, key in enumerate(reference.drawn)} if plane else dict(reference.joint_numbers)
+        self._corners = None if plane else _JointCorners(reference)
         self._reacting: tuple[Array, Array, Array, Array] | None = None
         self._known: tuple[Array, Array, Array] | None = None
         self._among: tuple[Observer, Array] | None = None
@@ -144,8 +147,9 @@ class Observer:
             gap, valid = rows.gap, rows.valid
         else:
             gap, valid = layout.maker.gaps(search.touch(state.placement))
-        if self.reference.disc.dim == 3:
+        if self._corners is not None:  # what gapes wider than the search looks has no slots
             gap = np.where(valid, gap, 0.0)
+            np.maximum.at(opening, self._corners.joint, self._corners.openings(state.placement))
         np.maximum.at(opening, number, np.maximum(gap[own], 0.0))
         memory = state.memory
         if memory.key is self.maker.slots.key:
@@ -181,3 +185,26 @@ class Observer:
     def _springs(self, state: MotionState) -> float:
         """Return the energy of joints of finite stiffness and of ties [kN m]."""
         return state.ties.stored(self.maker.ties) + float(state.memory.stored.sum())
+
+
+class _JointCorners:
+    """Corners of the patches as described between bodies in space that are not meshed."""
+
+    def __init__(self, reference: Reference) -> None:
+        disc = reference.disc
+        faces = [f for f in reference.detection.faces if isinstance(f, Patch) and max(disc.shape_of[[f.a, f.b]]) < 0]
+        count = [len(face.polygon) for face in faces]
+        self.joint = np.repeat([reference.joint_numbers[face.a, face.b] for face in faces], count).astype(int)
+        """Number (k,) of the first joint between the two bodies."""
+        self._a, self._b = (np.repeat([getattr(f, side) for f in faces], count).astype(int) for side in "ab")
+        self._at = np.concatenate([face.polygon for face in faces]) if faces else np.zeros((0, 3))
+        self._gap = np.concatenate([face.gap for face in faces]) if faces else np.zeros(0)
+        self._normal = np.repeat(np.array([face.normal for face in faces]).reshape(-1, 3), count, axis=0)
+        self._rest = disc.centroids
+
+    def openings(self, placement: Placement) -> Array:
+        """Return how far the corners (k,) are open, along the normal that turns with the first body [m]."""
+        a, b = self._a, self._b
+        on_a, on_b = (placement.points(body, self._at - self._rest[body]) for body in (a, b))
+        opened = dot(on_b - on_a, placement.turns[a].apply(self._normal)) + self._gap
+        return np.asarray(np.maximum(opened, 0.0))
