@@ -35,7 +35,7 @@ def write_cell(
     written = ["summary.json", *_draw(plot_model(cell.model), place / "cell")]
     if moduli is not None:
         table = {"stress": np.array(COMPONENTS)}
-        table |= {f"by_strain_{name}": moduli.matrix[:, k] for k, name in enumerate(COMPONENTS)}
+        table |= {f"by_strain_{name} [kN/m2]": moduli.matrix[:, k] for k, name in enumerate(COMPONENTS)}
         write_csv(table, place / "moduli.csv")
         written += ["moduli.csv", *_draw(moduli.plot.polar(), place / "moduli")]
     if domain is not None:

@@ -11,6 +11,7 @@ from concio.model.self_weight import weight_groups, weightless
 from concio.problem.tolerances import CERTIFIED
 from concio.solvers.path.record import Outcome as Ended
 from concio.verdict.attention import SO_WITH, attention, joints_not_made
+from concio.verdict.forced import forced_on_path
 from concio.verdict.odd_weights import odd_weights
 from concio.verdict.question import Question, question_of
 from concio.verdict.unseen import unseen
@@ -47,7 +48,7 @@ def path_verdict(found: PathResult) -> Verdict:
     found : PathResult
     """
     outcome = _outcome(found)
-    odd = attention(found.assembly)
+    odd = (*attention(found.assembly), *forced_on_path(found))
     first = tuple(f"{_capital(line)}." for line in odd)
     return Verdict(
         outcome=outcome,

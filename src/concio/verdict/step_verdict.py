@@ -15,6 +15,7 @@ from concio.problem.tolerances import CERTIFIED
 from concio.solvers.statics.self_stress import SelfStress, least_compression, least_compression_of
 from concio.verdict.attention import attention, joints_not_made, torsion
 from concio.verdict.crushing import crushing
+from concio.verdict.forced import FORCED, forced_together
 from concio.verdict.odd_weights import odd_weights
 from concio.verdict.part_words import parts_told, regularised
 from concio.verdict.question import GIVEN, Question, question_of
@@ -27,10 +28,6 @@ if TYPE_CHECKING:
 
 MUCH = 1000.0
 """Forces of a joint this many times all loads are pointed out."""
-
-FORCED = 1e-2
-"""Share of the largest displacement that an added compliance takes up where rigid blocks are forced together; of blocks
-that can move aside it takes up a share that falls with the compliance added, some 1e-4."""
 
 ON_PATH = "path"
 """Method of a result that is a state of a load path."""
@@ -164,10 +161,7 @@ def _not_rigid(result: Result) -> tuple[str, ...]:
     answer, size = result.solution, f"{result.lent_compliance:.3g} m/kN"
     closing = float((result.assembly.laws.normal_compliance * answer.normal_force).max(initial=0.0))
     if closing > FORCED * float(np.abs(answer.displacement).max(initial=0.0)):
-        return (
-            "blocks that cannot yield are forced together: the forces between them grow without bound as joints become "
-            f"stiffer, and those given belong to a compliance of {size}",
-        )
+        return (forced_together(result.lent_compliance),)
     return (
         f"joints between rigid blocks keep the compliance of {size} that was added to them: no answer without it was "
         "certified, since which way they slip depends on it a little",

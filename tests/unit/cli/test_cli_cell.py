@@ -90,7 +90,9 @@ def test_out_holds_tables_that_a_finite_element_program_can_read(dry):
     stress = np.array([0.65 * 100 * 0.4 / 0.35, -100.0, 0.0])  # the known strength along the beds
     assert (faces[:, :3] @ stress - faces[:, 3]).max() == pytest.approx(0.0, abs=1e-9)
     with (place / "moduli.csv").open() as file:
-        matrix = np.array([row[1:] for row in list(csv.reader(file))[1:]], dtype=float)
+        head, *rows = csv.reader(file)
+    assert head == ["stress", *(f"by_strain_{name} [kN/m2]" for name in ("xx", "yy", "xy"))]
+    matrix = np.array([row[1:] for row in rows], dtype=float)
     assert matrix == pytest.approx(concio.homogenise(concio.load(dry)).matrix)
     again = run("cell", dry, "--out", "result", "--no-strength")
     assert again[0] == 0
