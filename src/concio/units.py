@@ -72,6 +72,8 @@ GRAVITY = 9.80665
 """Standard gravity [m/s2]."""
 DECIMAL_COMMA = "the decimal separator is a point, not a comma: 1.5, not 1,5"
 """What to do about ``1,5``."""
+HEADING = re.compile(r"^\s*(?P<name>[^\[\]]+?)\s*(?:\[(?P<unit>[^\[\]]*)\])?\s*$")
+"""Heading of a column, perhaps with a unit: ``value [mm]``."""
 
 
 def _unit(text: str) -> tuple[float, int, int, int] | None:

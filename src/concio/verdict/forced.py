@@ -61,7 +61,7 @@ def forced_on_path(found: PathResult) -> tuple[str, ...]:
 
 
 def _movement(assembly: Assembly, before: Mapping[str, float], after: Mapping[str, float]) -> float:
-    """Return the largest movement that supports and moved obstacles impose on a pair from some factors to others [m]."""
+    """Return the largest movement that supports and moved obstacles impose on a pair between some factors [m]."""
     pairs = assembly.pairs
     largest = 0.0
     for group in {*assembly.moved, *assembly.supported.imposed}:

@@ -18,7 +18,7 @@ from concio.files import read_text, unguarded
 from concio.model.file.reading import file_units, model_from_tables, read_tables
 from concio.model.file.survey_table import CandidateTable, MeasurementTable, SurveyTable, survey_table
 from concio.model.model import Model
-from concio.units import quantity
+from concio.units import HEADING, quantity
 
 COLUMNS = (
     "name", "kind", "value", "error", "body_a", "body_b", "x", "y", "z", "to_x", "to_y", "to_z", "along_x", "along_y",
@@ -26,7 +26,6 @@ COLUMNS = (
 )  # fmt: skip
 """Columns of a table of measurements; of a joint both bodies, else the body and that of the second point."""
 NO_VALUE = "give it; a joint that was found closed is of kind 'closed', and what was not measured is left out"
-HEADING = re.compile(r"^\s*(?P<name>[^\[\]]+?)\s*(?:\[(?P<unit>[^\[\]]*)\])?\s*$")
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +71,8 @@ def read_survey(path: str | os.PathLike[str]) -> Survey:
     found = [_measurement(m, table, f"{where} {k}") for k, m in enumerate(table.measurements, 1)]
     if table.measurements_file:
         errors = {"length": table.error, "angle": table.error_of_tilts}
-        found += read_measurements(path.parent / table.measurements_file, errors)
+        length = data.get("units", {}).get("length", "m")
+        found += read_measurements(path.parent / table.measurements_file, errors, length=length)
     candidates = tuple(_candidate(c) for c in table.candidates)
     options = {
         key: getattr(table, key) for key in ("most", "beyond", "confidence", "steps", "method", "large")
@@ -82,7 +82,7 @@ def read_survey(path: str | os.PathLike[str]) -> Survey:
 
 
 def read_measurements(
-    path: str | os.PathLike[str], errors: Mapping[str, float | None] | None = None
+    path: str | os.PathLike[str], errors: Mapping[str, float | None] | None = None, *, length: str = "m"
 ) -> tuple[Measurement, ...]:
     """Return the measurements of a CSV table.
 
@@ -94,6 +94,8 @@ def read_measurements(
     path : str or Path
     errors : mapping, optional
         Standard deviations of ``"length"`` [m] and ``"angle"`` [rad] where a line gives none.
+    length : str
+        Unit of the bare lengths of the model file; those of the table have to say their own where that is not m.
 
     Raises
     ------
@@ -102,7 +104,7 @@ def read_measurements(
     """
     path = Path(path)
     text = read_text(path, hint="paths in a model file are relative to it")
-    return tuple(_row(row, units, errors or {}, place) for place, row, units in _rows(text, str(path)))
+    return tuple(_row(row, units, errors or {}, place, length) for place, row, units in _rows(text, str(path)))
 
 
 def _rows(text: str, where: str) -> Iterator[tuple[str, dict[str, str], dict[str, str]]]:
@@ -142,13 +144,16 @@ def _rows(text: str, where: str) -> Iterator[tuple[str, dict[str, str], dict[str
 
 
 def _row(
-    row: Mapping[str, str], units: Mapping[str, str], errors: Mapping[str, float | None], place: str
+    row: Mapping[str, str], units: Mapping[str, str], errors: Mapping[str, float | None], place: str, length: str
 ) -> Measurement:
     """Return the measurement of a line."""
 
     def read(key: str, kind: str) -> float:
         text = row[key]
         bare = re.fullmatch(r"[-+\d.eE]+", text) is not None
+        if bare and not units[key] and kind == "length" and length != "m":
+            msg = f"the model file counts in {length}, and the table does not say the unit of '{key}'"
+            raise InputError(msg, where=f"{place}, {key}", hint=f"name the column '{key} [{length}]'")
         return quantity(f"{text} {units[key]}".strip() if bare else text, kind, where=f"{place}, {key}")
 
     kind = row.get("kind", "opening")

@@ -5,8 +5,9 @@ JSON::
     {"format": "concio blocks", "version": 1, "unit": "m",
      "blocks": [{"name": "b1", "outline": [[0, 0], [0.4, 0], [0.4, 0.2], [0, 0.2]], "material": "block"}]}
 
-CSV has a header; an outline is a text of vertices separated by semicolons, in metres. Names that a spreadsheet would
-take for a formula are written with an apostrophe in front, which reading takes away again::
+CSV has a header; an outline is a text of vertices separated by semicolons. Lengths are in metres, or in the unit that
+stands with the name of their column: ``outline [mm]``, ``thickness [cm]``; ``holes`` have that of the outline. Names
+that a spreadsheet would take for a formula are written with an apostrophe in front, which reading takes away again::
 
     name,outline,material,kind,role,layer,thickness
     b1,0 0; 0.4 0; 0.4 0.2; 0 0.2,block,elastic,block,,1.0
@@ -17,6 +18,9 @@ loop) in place of its outline; it goes into a JSON table. ``name`` and the shape
 are left out or their cell is empty, have the defaults of :class:`concio.model.body.Body`; a thickness that is not
 given is that of ``[analysis]``. JSON may hold ``mesh_size``
 too, and another ``unit`` of its coordinates (thickness and mesh size are always in m).
+
+A model file whose ``[units]`` count lengths in another unit than m needs a table that says its own: it would be read in
+metres where its author meant millimetres.
 """
 
 from __future__ import annotations
@@ -25,7 +29,8 @@ import csv
 import io
 import json
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -37,12 +42,14 @@ from concio.files import guarded, read_text, unguarded, whole_file
 from concio.model.interfaces.polygon_check import check_polygon
 from concio.model.model import Array, Body
 from concio.model.polyhedron import Polyhedron
-from concio.units import DECIMAL_COMMA, quantity
+from concio.units import DECIMAL_COMMA, HEADING, is_bare, quantity
 
 FORMAT, VERSION = "concio blocks", 1
 _TEXTS = ("material", "kind", "role", "layer")
 _NUMBERS = ("thickness", "mesh_size")
+_LENGTHS = ("outline", "holes", *_NUMBERS)
 _COLUMNS = ("name", "outline", *_TEXTS, *_NUMBERS, "holes")
+NO_UNIT = "{}: the model file counts in {}, and the table does not say its unit"
 _SOLID = ("vertices", "faces", "holes")
 
 
@@ -58,7 +65,7 @@ def _row(body: Body | Polyhedron) -> dict[str, Any]:
     return {**row, **{k: getattr(body, k) for k in _TEXTS}, "mesh_size": body.mesh_size}
 
 
-def read_blocks(path: str | Path, thickness: float = 1.0) -> tuple[Body | Polyhedron, ...]:
+def read_blocks(path: str | Path, thickness: float = 1.0, length: str = "m") -> tuple[Body | Polyhedron, ...]:
     """Return the blocks of a table, every outline checked.
 
     Parameters
@@ -67,6 +74,8 @@ def read_blocks(path: str | Path, thickness: float = 1.0) -> tuple[Body | Polyhe
         Ends in ``.json`` or ``.csv``.
     thickness : float
         Of plane blocks that give none [m].
+    length : str
+        Unit of the bare lengths of the model file; the table has to say its own where that is not m.
 
     Raises
     ------
@@ -79,9 +88,9 @@ def read_blocks(path: str | Path, thickness: float = 1.0) -> tuple[Body | Polyhe
     text = read_text(path, hint="paths in a model file are relative to it")
     rows: Iterable[tuple[str, Mapping[str, Any]]]
     if path.suffix.lower() == ".json":
-        rows, factor = _json_rows(text, str(path))
+        rows, factor = _json_rows(text, str(path), length)
     elif path.suffix.lower() == ".csv":
-        rows, factor = _csv_rows(text, str(path)), 1.0
+        rows, factor = _csv_rows(text, str(path), length)
     else:
         solid = path.suffix.lower() in (".obj", ".stl", ".ply", ".off", ".3dm", ".ifc")
         msg = f"a table of blocks ends in .json or .csv, not in '{path.suffix}'"
@@ -138,7 +147,7 @@ def write_blocks(path: str | Path, bodies: Sequence[Body | Polyhedron]) -> None:
         fresh.write_text(text, encoding="utf-8")
 
 
-def _json_rows(text: str, where: str) -> tuple[list[tuple[str, Mapping[str, Any]]], float]:
+def _json_rows(text: str, where: str, length: str) -> tuple[list[tuple[str, Mapping[str, Any]]], float]:
     try:
         data = json.loads(text)
     except json.JSONDecodeError as error:
@@ -147,7 +156,10 @@ def _json_rows(text: str, where: str) -> tuple[list[tuple[str, Mapping[str, Any]
     except (ValueError, RecursionError) as error:
         what = "it is nested too deeply" if isinstance(error, RecursionError) else "a number has too many digits"
         raise InputError(what, where=where) from None
-    factor = 1.0
+    factor, unit = 1.0, data.get("unit") if isinstance(data, dict) else None
+    if length != "m" and unit is None:
+        hint = f'write {{"unit": "{length}", "blocks": [...]}}'
+        raise InputError(NO_UNIT.format("coordinates", length), where=where, hint=hint)
     if isinstance(data, dict):
         if data.get("format", FORMAT) != FORMAT or data.get("version", VERSION) != VERSION:
             msg = f"format '{data.get('format')}' version {data.get('version')} is not '{FORMAT}' version {VERSION}"
@@ -163,32 +175,72 @@ def _json_rows(text: str, where: str) -> tuple[list[tuple[str, Mapping[str, Any]
         if not isinstance(row, dict):
             msg = f"{row!r} is not a table of keys"
             raise InputError(msg, where=place)
+        for key in _NUMBERS:
+            if length != "m" and isinstance(row.get(key), int | float):
+                hint = f'write "{key}": "{row[key]:g} {length}"'
+                raise InputError(NO_UNIT.format(key, length), where=place, hint=hint)
         rows.append((place, row))
     return rows, factor
 
 
-def _csv_rows(text: str, where: str) -> Iterable[tuple[str, Mapping[str, Any]]]:
-    reader = csv.DictReader(io.StringIO(text), skipinitialspace=True)
-    try:
-        header = list(reader.fieldnames or [])
-        for name in ("name", "outline"):
-            if name not in header:
-                msg = f"the header has no column '{name}'"
-                hint = "the first line must name the columns: " + ",".join(_COLUMNS[:-2])
-                if ";" in "".join(header):
-                    hint = "columns are separated by commas, vertices by semicolons"
-                raise InputError(msg, where=where, hint=hint)
-        twice = [name for name in header if header.count(name) > 1]
-        if twice:
-            msg = f"the header has the column '{twice[0]}' twice"
-            raise InputError(msg, where=where, hint="leave one of them out")
-        for row in reader:
+def _csv_rows(text: str, where: str, length: str) -> tuple[Iterable[tuple[str, Mapping[str, Any]]], float]:
+    reader = csv.reader(io.StringIO(text), skipinitialspace=True)
+    with _legible(reader, where):
+        header, units = _columns(next(reader, []), where, length)
+    return _csv_lines(reader, header, units, where), quantity(f"1 {units['outline']}", "length", where=where)
+
+
+def _columns(cells: list[str], where: str, length: str) -> tuple[list[str], dict[str, str]]:
+    """Return the names of the columns, and the units of those of lengths."""
+    found = [match.groups() if (match := HEADING.match(unguarded(cell))) else (cell, None) for cell in cells]
+    both = zip(found, cells, strict=True)
+    header = [name if unit is None or name in _LENGTHS else cell for (name, unit), cell in both]
+    for name in ("name", "outline"):
+        if name not in header:
+            msg = f"the header has no column '{name}'"
+            hint = "the first line must name the columns: " + ",".join(_COLUMNS[:-2])
+            if ";" in "".join(cells):
+                hint = "columns are separated by commas, vertices by semicolons"
+            raise InputError(msg, where=where, hint=hint)
+    twice = [name for name in header if header.count(name) > 1]
+    if twice:
+        msg = f"the header has the column '{twice[0]}' twice"
+        raise InputError(msg, where=where, hint="leave one of them out")
+    stated = {name: unit for name, unit in found if name in _LENGTHS}
+    for name, unit in stated.items():
+        if length != "m" and not unit and name != "holes":
+            hint = f"name it '{name} [{length}]'"
+            raise InputError(NO_UNIT.format(f"column '{name}'", length), where=where, hint=hint)
+    units = {name: unit or "m" for name, unit in stated.items()}
+    if stated.get("holes") and units["holes"] != units["outline"]:
+        msg = "outlines and holes are in different units"
+        raise InputError(msg, where=where, hint="holes have the unit of the outline")
+    return header, units
+
+
+def _csv_lines(
+    reader: Any, header: list[str], units: Mapping[str, str], where: str
+) -> Iterator[tuple[str, Mapping[str, Any]]]:
+    with _legible(reader, where):
+        for cells in reader:
             place = f"{where}, line {reader.line_num}"
-            if None in row or None in row.values():
+            if not any(cell.strip() for cell in cells):
+                continue
+            if len(cells) != len(header):
                 msg = f"{len(header)} values were expected"
                 raise InputError(msg, where=place, hint="outlines use spaces and semicolons, not commas")
+            row = dict(zip(header, cells, strict=True))
+            for key in _NUMBERS:
+                if row.get(key) and is_bare(row[key]):
+                    row[key] = f"{row[key]} {units[key]}"
             kept = ("name", "outline", "material") if row.get("kind") == "fixed" else ("name", "outline")
             yield place, {k: unguarded(v) for k, v in row.items() if v != "" or k in kept}
+
+
+@contextmanager
+def _legible(reader: Any, where: str) -> Iterator[None]:
+    try:
+        yield
     except csv.Error as error:
         msg = f"line {reader.line_num} cannot be read: {error}"
         raise InputError(msg, where=where, hint="tables with outlines as long as that go into a .json file") from None

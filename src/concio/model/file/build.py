@@ -300,7 +300,7 @@ def _from_drawing(data: FileTable, materials: Materials, laws: Laws, folder: Pat
 def _blocks_of_file(data: FileTable, materials: Materials, folder: Path) -> list[Body | Polyhedron]:
     if data.blocks_file is None or data.blocks_file.lower().endswith(".dxf"):
         return []
-    bodies = read_blocks(folder / data.blocks_file, data.analysis.thickness)
+    bodies = read_blocks(folder / data.blocks_file, data.analysis.thickness, data.units.length)
     return [rigid_where_its_material_is(b, materials) for b in bodies]
 
 

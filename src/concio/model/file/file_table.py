@@ -54,7 +54,8 @@ class FileTable(Table):
     blocks :
         Blocks one by one.
     blocks_file :
-        CSV or JSON table of blocks, or a DXF drawing, beside the model file.
+        CSV or JSON table of blocks, or a DXF drawing, beside the model file. Lengths of a table are in m, or in the
+        unit that stands in its first line: ``name,outline [mm],thickness [mm]``.
     loads :
         Loads by group.
     supports :
