@@ -59,7 +59,7 @@ def lend(assembly: Assembly) -> Assembly:
         return assembly
     deforms = np.array([body.kind == "elastic" for body in assembly.model.bodies] + [False])  # the last: a fixed point
     stiff = ~(deforms[pairs.body_a] | deforms[pairs.body_b])
-    hard = stiff & ((law.normal_compliance == 0) | (law.tangential_compliance == 0))
+    hard = stiff & _hard(law)
     if not hard.any():
         return assembly
     of_body, of_pair = connected_bodies(assembly)
@@ -135,12 +135,18 @@ def with_compliance(problem: ContactProblem, live: Array) -> tuple[ContactProble
         Normal compliance of a pair of mean area [m/kN], 0 where none was given.
     """
     law = problem.laws
-    hard = (law.normal_compliance == 0) | (law.tangential_compliance == 0)
+    hard = _hard(law)
     force = float(np.abs(problem.f).max(initial=0.0)) or float(np.abs(live).max(initial=0.0))
     if (problem.K.nnz and np.abs(problem.K.data).any()) or not hard.any() or not force:
         return problem, 0.0
     everywhere, one = np.ones(problem.pairs, dtype=bool), np.zeros(problem.pairs, dtype=int)
     return replace(problem, laws=_softer(law, problem.area, everywhere, CLOSING / force, one)), CLOSING / force
+
+
+def _hard(law: Laws) -> Array:
+    """Tell which pairs (m,) are hard along their normal, or along the joint where they can carry shear; ties cannot."""
+    shears = (law.friction > 0) | (law.cohesion > 0)
+    return np.asarray((law.normal_compliance == 0) | (shears & (law.tangential_compliance == 0)))
 
 
 def _softer(law: Laws, area: Array, where: Array, lent: Array | float, part: Array) -> Laws:

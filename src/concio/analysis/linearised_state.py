@@ -18,6 +18,7 @@ from concio.analysis.inner_forces import inner_forces
 from concio.analysis.lent_compliance import lend
 from concio.errors import InputError
 from concio.problem.contact_problem import ContactProblem
+from concio.read_only import read_only
 from concio.solvers.methods import find
 
 if TYPE_CHECKING:
@@ -39,6 +40,7 @@ HUGE, OPEN = 1e12, 1e-6
 
 
 @dataclass(frozen=True, eq=False)
+@read_only
 class Rates:
     """Derivatives of a state to one side.
 

@@ -259,9 +259,13 @@ class Result(Shown):
         """The ties with their tension, elongation and state; those that broke are not among them."""
         return tie_forces(self.assembly, self.solution.displacement, self.contacts.normal_force, self.factors)
 
-    @cached_property
+    @property
     def reactions(self) -> dict[str, tuple[float, ...]]:
-        """Force of each fixed body and each support on the structure, (x, y) or (x, y, z) [kN]."""
+        """Force of each fixed body and each support on the structure, (x, y) or (x, y, z) [kN]; a copy."""
+        return dict(self._reactions)
+
+    @cached_property
+    def _reactions(self) -> dict[str, tuple[float, ...]]:
         pairs, disc = self.assembly.pairs, self.assembly.disc
         force = self.contacts.force_on_b
         found: dict[str, tuple[float, ...]] = {}

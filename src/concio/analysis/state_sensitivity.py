@@ -35,6 +35,7 @@ from concio.arguments import strict
 from concio.contact.assembly import assemble_beside
 from concio.errors import ConcioError, InputError
 from concio.problem.contact_problem import ContactProblem
+from concio.read_only import read_only
 
 if TYPE_CHECKING:
     from concio.analysis.result import Result
@@ -72,6 +73,7 @@ class StateRow:
 
 
 @dataclass(frozen=True, eq=False)
+@read_only
 class StateSensitivity:
     """What a certified state depends on.
 

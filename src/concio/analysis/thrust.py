@@ -16,6 +16,7 @@ from concio.analysis.contacts import JointResultants
 from concio.analysis.result import Result
 from concio.arguments import strict
 from concio.errors import InputError
+from concio.read_only import read_only
 from concio.representation import short_repr
 
 Array = np.ndarray
@@ -52,6 +53,7 @@ class Hinge:
 
 @short_repr
 @dataclass(frozen=True, eq=False)
+@read_only
 class ThrustLine:
     """Line of thrust along a chain of joints; k joints.
 
@@ -76,6 +78,7 @@ class ThrustLine:
 
 @short_repr
 @dataclass(frozen=True, eq=False)
+@read_only
 class CourseResultants:
     """Resultants of the bed joints at each level; l levels, from below.
 

@@ -17,6 +17,7 @@ from concio.analysis.thrust import AT_EDGE
 from concio.arguments import strict
 from concio.errors import InputError
 from concio.problem.tolerances import AT_BOUND
+from concio.read_only import read_only
 from concio.representation import short_repr
 
 Array = np.ndarray
@@ -24,6 +25,7 @@ Array = np.ndarray
 
 @short_repr
 @dataclass(frozen=True, eq=False)
+@read_only
 class ThrustSurface:
     """Crossing points of the joints that carry; k joints.
 

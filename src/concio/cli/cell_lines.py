@@ -12,6 +12,7 @@ from concio.analysis.cells.moduli import Moduli
 from concio.analysis.cells.periodic_cell import PeriodicCell
 from concio.analysis.cells.strength import StrengthDomain, StrengthRay
 from concio.contact.macroscopic_strain import COMPONENTS
+from concio.display import Units
 from concio.verdict.cell_verdict import cell_verdict, direction_words, domain_words, ray_words
 
 Array = np.ndarray
@@ -44,34 +45,44 @@ def cell_lines(
     cell: PeriodicCell, moduli: Moduli | None, domain: StrengthDomain | None, path: CellPath | None, *, none: str = ""
 ) -> list[str]:
     """Return everything in words; ``none`` says why there are no moduli."""
-    (a, b), (c, d) = cell.periods
+    units = cell.model.report
+    long, metre = units.factor("length")
+    (a, b), (c, d) = long * cell.periods
     count = len(cell.model.bodies)
     lines = [
         cell.model.title or "cell without a title",
         f"  cell         {count} {'body' if count == 1 else 'bodies'}, {len(cell.assembly.pairs):,} contact pairs; "
-        f"repeats by ({a:.6g}, {b:.6g}) and ({c:.6g}, {d:.6g}) m",
+        f"repeats by ({a:.6g}, {b:.6g}) and ({c:.6g}, {d:.6g}) {metre}",
     ]
     verdict = cell_verdict(cell, moduli, domain, path, none=none)
-    lines += [verdict.headline, *verdict.lines(cell.model.report)]
-    lines += [f"  moduli       none: {none}"] if moduli is None else moduli_lines(moduli)
+    lines += [verdict.headline, *verdict.lines(units)]
+    lines += [f"  moduli       none: {none}"] if moduli is None else moduli_lines(moduli, units)
     if domain is not None:
-        lines += strength_lines(domain)
+        lines += strength_lines(domain, units)
     if path is not None:
-        lines += path_lines(path)
+        lines += path_lines(path, units)
     return lines
 
 
-def moduli_lines(moduli: Moduli) -> list[str]:
+def _stresses(units: Units) -> tuple[float, str]:
+    """Return the factor and the symbol of all stresses and moduli: kN/m2 where no unit was chosen."""
+    return (1.0, "kN/m2") if units.stress == "auto" else units.factor("stress")
+
+
+def moduli_lines(moduli: Moduli, units: Units) -> list[str]:
     """Return the moduli, what they hold for and how they were checked."""
-    size = float(np.abs(moduli.matrix).max())
+    factor, symbol = _stresses(units)
+    matrix = factor * moduli.matrix
+    size = float(np.abs(matrix).max())
     rows = [
         "  ".join(f"{v if abs(v) > 1e-9 * size else 0.0:12.6g}" for v in row)
-        for row in moduli.matrix
+        for row in matrix
     ]  # fmt: skip
+    E_x, E_y, G_xy = (f"{factor * v:.6g}" for v in (moduli.E_x, moduli.E_y, moduli.G_xy))
     lines = [
-        f"  moduli       E_x {moduli.E_x:.6g}, E_y {moduli.E_y:.6g}, G_xy {moduli.G_xy:.6g} kN/m2; "
+        f"  moduli       E_x {E_x}, E_y {E_y}, G_xy {G_xy} {symbol}; "
         f"nu_xy {_round(moduli.nu_xy)}, nu_yx {_round(moduli.nu_yx)}",
-        f"  matrix       {rows[0]}   stresses xx, yy, xy [kN/m2]",
+        f"  matrix       {rows[0]}   stresses xx, yy, xy [{symbol}]",
         f"               {rows[1]}   by strains xx, yy and",
         f"               {rows[2]}   engineering shear xy",
     ]
@@ -80,37 +91,42 @@ def moduli_lines(moduli: Moduli) -> list[str]:
     if faces is None:
         lines.append(hold)
     else:
-        lines += [f"{hold}: as long as", *_faces(faces)]
+        lines += [f"{hold}: as long as", *_faces(faces, units)]
     lines.append(f"  checked      worst residual {moduli.certificate.worst:.0e}: balance, joints, symmetry, energy")
     return lines
 
 
-def strength_lines(domain: StrengthDomain) -> list[str]:
+def strength_lines(domain: StrengthDomain, units: Units) -> list[str]:
     """Return the half-spaces of the strength domain and the strength in directions."""
     words = domain_words(domain)
     lines = [f"  strength     {words}"] if words else []
     if domain.domain is not None:
-        lines += _faces(domain.domain.faces)
+        lines += _faces(domain.domain.faces, units)
     for ray in domain.rays:
-        lines += ray_lines(ray)
+        lines += ray_lines(ray, units)
     return lines
 
 
-def ray_lines(ray: StrengthRay) -> list[str]:
-    """Return the strength in one direction."""
+def ray_lines(ray: StrengthRay, units: Units) -> list[str]:
+    """Return the strength in one direction, whose components are stresses."""
     first, *rest = ray_words(ray)
-    return [f"  direction    {direction_words(ray)}: {first}", *(f"               {line}" for line in rest)]
+    factor, symbol = _stresses(units)
+    unit = "" if units.stress == "auto" else f" {symbol}"
+    head = f"  direction    {direction_words(ray, factor)}{unit}: {first}"
+    return [head, *(f"               {line}" for line in rest)]
 
 
-def path_lines(path: CellPath) -> list[str]:
+def path_lines(path: CellPath, units: Units) -> list[str]:
     """Return the stages of a path with the strain and stress at the end of each."""
+    factor, symbol = _stresses(units)
     lines = []
     for k, outcome in enumerate(path.outcomes):
         own = [step for step in path.steps if step.stage == k]
         events = sum(event.stage == k for event in path.events)
         lines.append(f"  stage        {path.stages[k].name}: {outcome.value} {events:,} events")
         if own:
-            lines.append(f"               strain {_three(own[-1].strain)}; stress {_three(own[-1].stress)} kN/m2")
+            stress = _three(factor * own[-1].stress)
+            lines.append(f"               strain {_three(own[-1].strain)}; stress {stress} {symbol}")
     lines += [f"  note         {note}" for note in path.notes]
     lines += [f"  stage        {later.name}: not begun" for later in path.stages[len(path.outcomes) :]]
     lines.append(
@@ -120,12 +136,13 @@ def path_lines(path: CellPath) -> list[str]:
     return lines
 
 
-def _faces(faces: HalfSpaces) -> list[str]:
+def _faces(faces: HalfSpaces, units: Units) -> list[str]:
+    factor, symbol = _stresses(units)
     lines = []
     for normal, offset in list(zip(faces.normals, faces.offsets, strict=True))[:MOST_FACES]:
         size = float(np.abs(normal).max())
         terms = [f"{v:+.6g} s_{name}" for name, v in zip(COMPONENTS, normal / size, strict=True) if abs(v) > 1e-9]
-        lines.append(f"               {' '.join(terms)} <= {_round(offset / size)}")
+        lines.append(f"               {' '.join(terms)} <= {_round(factor * offset / size)} {symbol}")
     if len(faces) > MOST_FACES:
         lines.append(f"               ... and {len(faces) - MOST_FACES} more (--out writes them all)")
     return lines or ["               (no condition at all)"]

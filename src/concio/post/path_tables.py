@@ -32,15 +32,17 @@ class PathTables:
     >>> path = concio.run_path(wall, [concio.Stage("weight", {"dead": 1.0}), concio.Stage("wind", {"live": 1.0})])
     >>> curve = path.tables.curve()
     >>> list(curve)
-    ['stage [-]', 'parameter [-]', 'displacement [m]', 'factor dead [-]', 'factor live [-]']
+    ['stage [-]', 'parameter [-]', 'displacement [m]', 'factor dead [-]', 'factor live [-]', 'point']
     >>> float(curve["factor live [-]"][-1]), len(curve["stage [-]"]) == len(path.steps)
     (1.0, True)
+    >>> str(path.tables.curve(concio.ControlPoint("c01-b01", at=(0.0, 0.1)))["point"][0])
+    'c01-b01 at (0, 0.1) m, along (1, 0)'
     """
 
     path: PathResult
 
     def curve(self, point: ControlPoint | None = None) -> Table:
-        """Return a row for each step: stage, displacement of a point, load factors, tensions of ties.
+        """Return a row for each step: stage, displacement of a point, load factors, tensions of ties, and which point.
 
         Parameters
         ----------
@@ -48,7 +50,8 @@ class PathTables:
             By default the point that moves most.
         """
         path = self.path
-        motion, parameter = path.curve(most_moving(path) if point is None else point)
+        point = most_moving(path) if point is None else point
+        motion, parameter = path.curve(point)
         tension = np.array([step.state.normal_force[path.assembly.ties] for step in path.steps])
         return {
             "stage [-]": np.array([step.stage + 1 for step in path.steps]),
@@ -56,6 +59,7 @@ class PathTables:
             "displacement [m]": motion,
             **{f"factor {g} [-]": np.array([s.factors[g] for s in path.steps]) for g in path.assembly.groups},
             **{f"tension {tie.name} [kN]": tension[:, k] for k, tie in enumerate(path.assembly.model.ties)},
+            "point": np.array([_in_words(point)] * len(path.steps)),
         }
 
     def events(self) -> Table:
@@ -73,3 +77,8 @@ class PathTables:
     def all(self) -> dict[str, Table]:
         """Return all tables by name."""
         return {"curve": self.curve(), "events": self.events()}
+
+
+def _in_words(point: ControlPoint) -> str:
+    at, along = (", ".join(f"{x + 0.0:.6g}" for x in v) for v in (point.at, point.direction))
+    return f"{point.body} at ({at}) m, along ({along})"

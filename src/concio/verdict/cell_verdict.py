@@ -93,9 +93,9 @@ def _strength(domain: StrengthDomain | None) -> list[str]:
     return [*faces, *(f"Direction {direction_words(ray)}: {'; '.join(ray_words(ray))}." for ray in domain.rays)]
 
 
-def direction_words(ray: StrengthRay) -> str:
-    """Return the direction of a ray in words."""
-    return ", ".join(f"{name} {v:g}" for name, v in zip(COMPONENTS, ray.direction, strict=True) if v)
+def direction_words(ray: StrengthRay, factor: float = 1.0) -> str:
+    """Return the direction of a ray in words, its components times a factor of their unit."""
+    return ", ".join(f"{name} {factor * v:g}" for name, v in zip(COMPONENTS, ray.direction, strict=True) if v)
 
 
 def ray_words(ray: StrengthRay) -> list[str]:

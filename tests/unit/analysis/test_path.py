@@ -13,8 +13,9 @@ from concio.analysis.path import ControlPoint, Stage, run_path
 from concio.analysis.settlement import settle
 from concio.contact.assembly import assemble
 from concio.errors import InputError
+from concio.model.actions import Tie
 from concio.model.generate.walls import wall
-from concio.model.materials import Elastic
+from concio.model.materials import Elastic, JointLaw
 from concio.model.model import Body, Support
 from concio.solvers.methods import find
 from concio.solvers.path.path_state import LinearPath, at_rest
@@ -270,3 +271,14 @@ def test_a_support_that_sinks_breaks_the_grip_of_the_joint_above_it():
     assert np.abs(gap).max() <= 0.1 * 1e-5
     forces = found.steps[-1].state.normal_force
     assert np.abs(walked.steps[-1].state.normal_force - forces).max() <= 1e-4 * np.abs(forces).max()
+
+
+def test_ties_are_no_hard_joints():
+    """Mortar and a tie without shear: nothing is hard; the path said that hard joints were given compliance."""
+    mortar = JointLaw(0.6, normal_stiffness=1e6, tangential_stiffness=4e5)
+    tie = Tie("t", "c01-b01", (0.0, 0.1), "", (-2.0, 0.1), stiffness=1e4)
+    tied = replace(wall(length=1.0, height=0.2, horizontal=0.3, friction=mortar, block="rigid"), ties=(tie,))
+    assert lent_assembly(tied).lent_compliance == 0.0
+    assert run_path(tied, [WEIGHT]).notes == ()
+    hard = replace(tied, laws={name: replace(law, tangential_stiffness=None) for name, law in tied.laws.items()})
+    assert lent_assembly(hard).lent_compliance > 0.0

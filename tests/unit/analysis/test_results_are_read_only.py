@@ -13,6 +13,11 @@ import concio
 PILLAR = concio.column(width=0.5, height=1.0, blocks=2, block="rigid", horizontal=0.1)
 ELASTIC = concio.column(width=0.5, height=1.0, blocks=2, horizontal=0.1)
 FOOT = concio.Support("foot", "ground", displacement=(0.0, -1e-3))
+LIVE = concio.column(width=0.5, height=1.0, blocks=2, block="rigid", horizontal=1.0)
+CELL = concio.cell(
+    block="rigid",
+    friction=concio.JointLaw(0.6, cohesion=20.0, tensile_strength=10.0, normal_stiffness=1e6, tangential_stiffness=4e5),
+)
 WEIGHT = [concio.Stage("weight", {"dead": 1.0}), concio.Stage("push", {"live": 1.0})]
 
 MADE = {
@@ -24,10 +29,19 @@ MADE = {
     "settlement": lambda: concio.settle(dataclasses.replace(PILLAR, supports=(FOOT,))),
     "push": lambda: concio.push(PILLAR),
     "motion": lambda: concio.dynamics(PILLAR, velocities={"b01": (0.1, 0.0, 0.0)}, duration=0.02),
+    "limit": lambda: concio.limit(LIVE),
+    "rocking": lambda: concio.rock(concio.column(width=0.5, height=2.0, blocks=1, block="rigid", horizontal=0.0)),
+    "thrust line": lambda: concio.thrust_line(concio.solve(concio.arch(span=3.0, ring=0.4, voussoirs=7, friction=0.8))),
+    "thrust surface": lambda: concio.thrust_surface(concio.solve(concio.extrude(PILLAR))),
+    "sensitivity": lambda: concio.state_sensitivity(concio.solve(ELASTIC)),
+    "moduli": lambda: concio.homogenise(CELL),
+    "strength": lambda: concio.strength(CELL, [(1, 0, 0)], stress=(0, -50, 0)),
+    "cell path": lambda: concio.strain_path(CELL, [{"stress yy": -100.0}, {"strain xy": 1e-3}]),
 }
 
 COMPUTED = (
-    "displacement", "mechanism_velocity", "contacts", "joints", "joints_in_space", "ties", "stress", "mean", "principal"
+    "displacement", "mechanism_velocity", "contacts", "joints", "joints_in_space", "ties", "stress", "strain", "mean",
+    "principal",
 )  # fmt: skip
 LEFT_OUT = ("assembly", "model", "disc", "info", "end", "stages", "points", "control")
 """What a result was computed from, and the state from which a motion goes on."""
@@ -61,6 +75,8 @@ def test_a_number_that_is_changed_is_refused_and_a_table_is_a_copy():
     result = concio.solve(PILLAR)
     with pytest.raises(ValueError, match="read-only"):
         result.contacts.normal_force[0] += 1.0
+    result.reactions["ground"] = (0.0, 0.0)
+    assert result.reactions["ground"][1] == pytest.approx(result.total_load[1] * -1.0)
     for name, table in result.tables.all().items():
         for values in table.values():
             values[:] = values[0]

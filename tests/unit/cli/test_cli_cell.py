@@ -44,6 +44,22 @@ def test_the_template_is_a_cell_that_can_be_checked_and_homogenised(tmp_path, mo
     assert "sheared: The end asked for was reached." in out
 
 
+def test_a_cell_is_told_in_the_units_that_are_asked_for(tmp_path):
+    file = tmp_path / "soft.toml"
+    law = concio.JointLaw(0.6, cohesion=20.0, tensile_strength=10.0, normal_stiffness=1e6, tangential_stiffness=4e5)
+    concio.save(concio.cell(block="rigid", lap=0.3, friction=law), file)
+    asked = ("cell", file, "--stress", "yy=-100 kPa", "-d", "xy=1 kPa", "--no-coulomb", "-s", "stress yy=-30 kPa")
+    code, out, _ = run(*asked, "--units", "N, mm, MPa")
+    assert code == 0
+    assert "repeats by (250, 0) and (0, 250) mm" in out
+    assert "E_x 292, E_y 125, G_xy 40.1961 MPa" in out  # E_y is the height of a course times the normal stiffness
+    assert "+1 s_yy <= 0.01 MPa" in out
+    assert "xy 0.001 MPa: associated bound 61.5" in out
+    assert "stress (0, -0.03, 0) MPa" in out
+    assert "kN/m2" not in out
+    assert "E_y 125000, G_xy 40196.1 kN/m2" in run(*asked)[1]
+
+
 @pytest.mark.long
 def test_moduli_strength_and_directions_in_words(dry):
     code, out, _ = run("cell", dry, "--stress", "yy=-100", "--direction", "xy=1", "--direction", "xx=-1,yy=-1")

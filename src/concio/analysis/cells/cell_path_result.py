@@ -17,6 +17,7 @@ from concio.contact.macroscopic_strain import COMPONENTS, STRAINS
 from concio.model.stages import Stage
 from concio.problem.certificate import Certificate
 from concio.problem.solution import Status, judge
+from concio.read_only import locked, read_only
 from concio.representation import short_repr
 from concio.solvers.path.path_state import LinearPath, PathState, path_kinematics
 from concio.solvers.path.record import Outcome
@@ -32,6 +33,7 @@ Array = np.ndarray
 
 @short_repr
 @dataclass(frozen=True, eq=False)
+@read_only
 class CellStep:
     """One point of the path of a cell.
 
@@ -95,12 +97,12 @@ class CellPath(Shown):
     @cached_property
     def strain(self) -> Array:
         """Macroscopic strains (n, 3) of all steps: xx, yy and engineering shear xy."""
-        return np.array([s.strain for s in self.steps])
+        return locked(np.array([s.strain for s in self.steps]))
 
     @cached_property
     def stress(self) -> Array:
         """Macroscopic stresses (n, 3) of all steps [kN/m2]."""
-        return np.array([s.stress for s in self.steps])
+        return locked(np.array([s.stress for s in self.steps]))
 
     @property
     def complete(self) -> bool:

@@ -15,6 +15,7 @@ import numpy as np
 from scipy.optimize import linprog
 from scipy.spatial import ConvexHull
 
+from concio.read_only import read_only
 from concio.representation import short_repr
 
 Array = np.ndarray
@@ -28,6 +29,7 @@ SAME = 1e-9
 
 @short_repr
 @dataclass(frozen=True, eq=False)
+@read_only
 class HalfSpaces:
     """An intersection of half-spaces of components xx, yy, xy.
 

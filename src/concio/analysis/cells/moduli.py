@@ -36,6 +36,7 @@ from concio.problem.certificate import imbalance
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.pair_state import PairStates
 from concio.problem.tolerances import CHECKED, CONTRADICTION
+from concio.read_only import read_only
 from concio.representation import short_repr
 from concio.solvers.path.path_state import CLOSED, OPEN, STICK, LinearPath
 from concio.solvers.path.state_rates import state_rates
@@ -93,6 +94,7 @@ class ModuliCertificate:
 
 @short_repr
 @dataclass(frozen=True, eq=False)
+@read_only
 class Moduli(Shown):
     """Homogenised moduli, with the states of the joints for which they hold.
 

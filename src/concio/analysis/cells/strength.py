@@ -30,6 +30,7 @@ from concio.errors import InputError, NoEquilibriumError
 from concio.model.model import Model
 from concio.problem.contact_problem import ContactProblem
 from concio.problem.solution import Progress, ProgressCallback
+from concio.read_only import locked, read_only
 from concio.representation import short_repr
 from concio.solvers.statics.associated_limit import LimitLoad, associated_limit
 from concio.solvers.statics.collapse_state import CollapseState
@@ -47,6 +48,7 @@ Array = np.ndarray
 
 @short_repr
 @dataclass(frozen=True, eq=False)
+@read_only
 class StrengthRay:
     """Strength in one direction of stress.
 
@@ -87,7 +89,7 @@ class StrengthRay:
         acts = self.direction != 0  # an infinite multiple of nothing is nothing
         found: Array = self.base.copy()
         found[acts] += self.multiplier * self.direction[acts]
-        return found
+        return locked(found)
 
     @property
     def coulomb(self) -> float:
@@ -99,6 +101,7 @@ class StrengthRay:
 
 @short_repr
 @dataclass(frozen=True, eq=False)
+@read_only
 class StrengthDomain(Shown):
     """Strength of a cell in some directions, and as a domain.
 

@@ -21,11 +21,13 @@ from skfem.helpers import sym_grad
 from concio.analysis.continuum.continuum import Continuum
 from concio.errors import SolverError
 from concio.problem.tolerances import CHECKED
+from concio.read_only import read_only
 
 Array = np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
+@read_only
 class ElasticContinuum:
     """Answer of the elastic continuum.
 

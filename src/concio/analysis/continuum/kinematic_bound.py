@@ -26,12 +26,14 @@ from concio.analysis.continuum.joint_domain import joint_half_planes
 from concio.errors import SolverError
 from concio.kinematics.frames import turned_left
 from concio.problem.tolerances import DEAD_POWER
+from concio.read_only import read_only
 from concio.solvers.statics.programme import Optimum, optimise
 
 Array = np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
+@read_only
 class KinematicBound:
     """A mechanism that proves a multiplier from above.
 

@@ -24,12 +24,14 @@ from concio.analysis.continuum.continuum import Continuum
 from concio.analysis.continuum.joint_domain import joint_half_planes
 from concio.errors import SolverError
 from concio.kinematics.frames import turned_left, turned_right
+from concio.read_only import read_only
 from concio.solvers.statics.programme import optimise
 
 Array = np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
+@read_only
 class StaticBound:
     """Stresses that prove a multiplier from below.
 

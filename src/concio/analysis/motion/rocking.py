@@ -16,6 +16,7 @@ from concio.analysis.motion.push_result import PushEnding, PushResult
 from concio.arguments import strict
 from concio.errors import InputError
 from concio.model.model import Load, Model, require_model
+from concio.read_only import read_only
 from concio.verdict.verdict import Verdict
 from concio.views import Shown
 
@@ -23,6 +24,7 @@ Array = np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
+@read_only
 class RockingResult(Shown):
     """A rocking curve, from its peak on.
 

@@ -7,6 +7,7 @@ from enum import Enum
 from itertools import pairwise
 
 from concio.problem.contact_problem import Array
+from concio.read_only import read_only
 from concio.representation import short_repr
 from concio.solvers.path.path_state import PathState
 
@@ -61,6 +62,7 @@ class Event:
 
 @short_repr
 @dataclass(frozen=True, eq=False)
+@read_only
 class EventPath:
     """An exact path: its corners and its events.
 

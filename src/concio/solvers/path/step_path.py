@@ -23,6 +23,7 @@ from concio.problem.apart import own, solve_apart
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.parts import Part, connected_parts
 from concio.problem.solution import Progress, ProgressCallback, Solution, Solver, Status, judge
+from concio.read_only import read_only
 from concio.solvers.path import near_forces
 from concio.solvers.path.event_words import NORMAL
 from concio.solvers.path.path_state import (
@@ -52,6 +53,7 @@ Locate = Callable[[PathState, PathState], PathState | None]
 
 
 @dataclass(frozen=True, eq=False)
+@read_only
 class StepPath:
     """States, events, outcome and last direction of a path, whichever way it was followed.
 

@@ -26,6 +26,7 @@ from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.parts import Part, parts_of
 from concio.problem.solution import Mechanism
 from concio.problem.tolerances import CHECKED, CONE_TARGET
+from concio.read_only import read_only
 from concio.representation import short_repr
 from concio.solvers.statics.cone_statics import ConeStatics
 from concio.solvers.statics.existence import statically_admissible
@@ -35,6 +36,7 @@ from concio.solvers.statics.programme import Method, StaticProgramme, optimise
 
 @short_repr
 @dataclass(frozen=True, eq=False)
+@read_only
 class LimitLoad:
     """Associated limit multiplier with its two proofs.
 

@@ -23,6 +23,7 @@ import scipy.sparse as sp
 
 from concio.problem.contact_problem import Array, ContactProblem
 from concio.problem.tolerances import CHECKED, MOVES
+from concio.read_only import read_only
 from concio.representation import short_repr
 from concio.solvers.statics.associated_limit import static_residual
 from concio.solvers.statics.collapse_cones import forces_in_space
@@ -35,6 +36,7 @@ NEAR = 1e9
 
 @short_repr
 @dataclass(frozen=True, eq=False)
+@read_only
 class CollapseState:
     """A certified state in which the structure can begin to move under Coulomb friction.
 
