@@ -118,6 +118,26 @@ def loads(data: Data, factors: Factors) -> list[list[Vector]]:
     return total
 
 
+def structure(data: Data, factors: Factors) -> None:
+    """Raise unless a structure is stated: bodies that are there, closed blocks with a volume, no load left out."""
+    for body in data["bodies"]:
+        if not isinstance(body["fixed"], bool):
+            raise ValueError(f"block {body['name']!r} is neither fixed nor free")
+        if not body["fixed"] and not solid(body)[0] > 0:
+            raise ValueError(f"block {body['name']!r} has no volume")
+        ends = [sorted(corners[k] for corners in body["pieces"]) for k in range(2)]
+        if len(body["pieces"][0]) == 2 and ends[0] != ends[1]:
+            raise ValueError(f"the outline of block {body['name']!r} is not closed")
+    for k, joint in enumerate(data["joints"]):
+        if not any(vector(joint["normal"])):
+            raise ValueError(f"joint point {k} has no normal")
+    for b in [joint[side] for joint in data["joints"] for side in "ab"] + [load["body"] for load in data["loads"]]:
+        if not 0 <= b < len(data["bodies"]):
+            raise ValueError(f"there is no body {b}")
+    if left := {load["group"] for load in data["loads"]} - set(factors):
+        raise ValueError(f"load group {min(left)!r} has no factor")
+
+
 def strength(joint: Data) -> list[Fraction]:
     """Return friction, cohesion, tension and cap of a joint point; -1 stands for inf."""
     texts = [joint.get(name, "inf" if name == "cap" else "0") for name in ("friction", "cohesion", "tension", "cap")]
@@ -201,6 +221,7 @@ def check(data: Data) -> str:
     growing = {group: exact(x) for group, x in data.get("multiplied", {}).items()}
     if set(constant) & set(growing):
         raise ValueError("a load group is both constant and multiplied")
+    structure(data, {**constant, **growing})
     more = any(set(joint) & {"cohesion", "tension", "cap"} for joint in data["joints"])
     points = f"with friction{' and strength' if more else ''} at the {len(data['joints'])} joint points stated"
     grow = [f"{g}{'' if x == 1 else f' x {factor(x)}'} multiplied" for g, x in growing.items()]

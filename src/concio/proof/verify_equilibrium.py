@@ -55,6 +55,28 @@ def weight(body: Data) -> list[Fraction]:
     return found
 
 
+def structure(data: Data) -> None:
+    """Raise unless a structure is stated: bodies that are there, closed blocks with a volume, no load left out."""
+    for body in data["bodies"]:
+        if not isinstance(body["fixed"], bool):
+            raise ValueError(f"block {body['name']!r} is neither fixed nor free")
+        if not body["fixed"] and not weight({**body, "unit_weight": "1"})[0] > 0:
+            raise ValueError(f"block {body['name']!r} has no volume")
+        if sorted(start for start, _ in body["pieces"]) != sorted(end for _, end in body["pieces"]):
+            raise ValueError(f"the outline of block {body['name']!r} is not closed")
+    for k, joint in enumerate(data["joints"]):
+        if not any(exact(x) for x in joint["normal"]):
+            raise ValueError(f"joint point {k} has no normal")
+        if joint.get("cap", "inf") != "inf" and exact(joint["cap"]) < 0:
+            raise ValueError(f"joint point {k} has a strength below 0")
+    for b in [joint[side] for joint in data["joints"] for side in "ab"] + [load["body"] for load in data["loads"]]:
+        if not 0 <= b < len(data["bodies"]):
+            raise ValueError(f"there is no body {b}")
+    for load in data["loads"]:
+        if load["group"] not in data["constant"]:
+            raise ValueError(f"load group {load['group']!r} has no factor")
+
+
 def numbering(data: Data) -> tuple[dict[int, int], dict[tuple[int, int], int], int]:
     """Return the first unknown of each free block, the unknowns of deformations, and how many there are of both."""
     free = [b for b, body in enumerate(data["bodies"]) if not body["fixed"]]
@@ -263,6 +285,7 @@ def check(data: Data) -> str:
         raise ValueError("the file was changed after it was written: its digest is another")
     if data["claim"] != "equilibrium":
         raise ValueError(f"the claim {data['claim']!r} is not for this program (verify.py: all but 'equilibrium')")
+    structure(data)
     rows, right, signs = system(data)
     x = solution(data, rows, right)
     for condition in signs:

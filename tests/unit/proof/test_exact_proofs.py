@@ -200,6 +200,37 @@ def test_every_digit_of_a_certificate_is_looked_at() -> None:
     assert tried > 100
 
 
+WRONG = [
+    (("joints", 0, "a"), -1, "no body -1"),
+    (("joints", 0, "b"), 9, "no body 9"),
+    (("loads", 0, "body"), -1, "no body -1"),
+    (("loads", 0, "group"), "wind", "'wind' has no factor"),
+    (("joints", 0, "normal"), ["0", "0"], "no normal"),
+    (("joints", 0, "cap"), "-1", "strength"),
+    (("bodies", 1, "fixed"), "no", "neither fixed nor free"),
+    (("bodies", 1, "thickness"), "-0.7", "no volume"),
+    (("bodies", 1, "pieces", 0, 0, 0), "0.1", "not closed"),
+]
+
+
+@pytest.mark.parametrize(("place", "value", "words"), WRONG, ids=[words for *_, words in WRONG])
+@pytest.mark.parametrize("claim", ["collapse", "equilibrium"])
+def test_what_is_no_structure_proves_nothing(claim: str, place: tuple[Any, ...], value: Any, words: str) -> None:
+    """A body -1 was the last one to one program and fixed to the other, and a load of another group was left out."""
+    model = concio.column(width=0.5, height=0.8, blocks=2, block="rigid", friction=0.7, horizontal=1.0, thickness=0.7)
+    push = {"collapse": 1.5, "equilibrium": 0.1}[claim]
+    made = concio.solve(model, factors={"live": push}, on_failure="return").proof(numbers="decimal")
+    reader = verify_equilibrium if claim == "equilibrium" else verify
+    assert (made["claim"], bool(reader.check(made))) == (claim, True)
+    wrong = deepcopy({key: entry for key, entry in made.items() if key != "digest"})
+    inner: Any = wrong
+    for key in place[:-1]:
+        inner = inner[key]
+    inner[place[-1]] = value
+    with pytest.raises(ValueError, match=words):
+        reader.check(sealed(wrong))
+
+
 def test_bounds_that_are_too_good_are_refused_by_the_equations() -> None:
     made = prove_limit(concio.assemble(concio.loads(pillar(sideways(1.0)))))
     low, high = bounds(made)
