@@ -105,6 +105,16 @@ def test_a_run_ends_where_it_has_no_progress_or_runs_away() -> None:
     assert stopping.reason(0, 0.9e-3, 1.0) == ""
     assert stopping.reason(0, 1.1e-3, 1.0) == "diverged"
     assert stopping.reason(3, 1e-5, 1.0) == "limit of iterations"
+    impatient, patient = Stopping(100, patient=False), Stopping(100)
+    for stopping in (impatient, patient):
+        stopping.improved(1.0)
+    steps = [0.3, 0.4, 0.2] + 6 * [0.015]
+    assert [impatient.reason(k, 1.0, step) for k, step in enumerate(steps)][-3:] == ["", *2 * ["steps became short"]]
+    assert [patient.reason(k, 1.0, step) for k, step in enumerate(steps)] == 9 * [""]
+    close = Stopping(100, patient=False)
+    close.improved(1e-3)  # closer by, eight steps count, which go 0.15 of the way together
+    steps = [0.3] + 7 * [0.019] + [0.03, 0.019]
+    assert [close.reason(k, 1e-3, step) for k, step in enumerate(steps)] == [*8 * [""], "", "steps became short"]
     far = Stopping(3)
     assert far.improved(1e-3)
     assert far.reason(0, 1e3, 1.0) == ""

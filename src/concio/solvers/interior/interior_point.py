@@ -32,7 +32,7 @@ J. Gondzio, Multiple centrality corrections in a primal-dual method for linear p
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import ClassVar
 
 import numpy as np
@@ -97,6 +97,8 @@ class Stopping:
     ----------
     most : int
         Largest number of iterations.
+    patient : bool
+        False where a failure costs little, as the load step is then halved: the run ends earlier.
     """
 
     SHORT: ClassVar = (0.02, 8)
@@ -106,11 +108,16 @@ class Stopping:
     CLOSE: ClassVar = 1e-4
     WORSE: ClassVar = 1e2
     """A point that was close and whose residual then grows this much runs away."""
+    ADVANCE: ClassVar = ((8, 0.15, 0.0), (5, 0.1, 3e-3))
+    """So many steps that reduce the residuals by less than this share, while the residual is above the last number: a
+    run without patience ends (decision 0500)."""
 
     most: int
+    patient: bool = True
     best: float = np.inf
     since: int = 0
     short: int = 0
+    left: list[float] = field(default_factory=list)
 
     def improved(self, merit: float) -> bool:
         """Note the merit of an iterate; return whether it is the best by a tenth."""
@@ -123,14 +130,22 @@ class Stopping:
     def reason(self, iteration: int, merit: float, step: float) -> str:
         """Return why to stop before the next iteration; empty where there is none."""
         self.short = self.short + 1 if step < self.SHORT[0] else 0
+        self.left.append(1.0 - step)
         near = self.best < self.CLOSE
         if iteration == self.most:
             return "limit of iterations"
-        if self.short >= self.SHORT[1]:
+        if self.short >= self.SHORT[1] or self._hardly_advances():
             return "steps became short"
         if near and merit > self.WORSE * self.best:
             return "diverged"
         return "no progress" if self.since >= self.PATIENCE[near] else ""
+
+    def _hardly_advances(self) -> bool:
+        """Return whether the last steps of a run without patience were short together."""
+        return not self.patient and any(
+            len(self.left) > steps and self.best > far and 1.0 - float(np.prod(self.left[-steps:])) < least
+            for steps, least, far in self.ADVANCE
+        )
 
 
 class InteriorPoint:
@@ -198,6 +213,7 @@ class InteriorPoint:
         most: int = 100,
         share: float = SHARE,
         level: float = 0.0,
+        patient: bool = True,
         watch: Callable[[int, float], bool | None] | None = None,
         ready: Callable[[Point, float], bool] | None = None,
     ) -> tuple[Point, Outcome]:
@@ -216,12 +232,14 @@ class InteriorPoint:
             Share of the step to the boundary that is taken.
         level : float
             Stop already at this mean product with small residuals (a point on the central path, for the homotopy).
+        patient : bool
+            False where a failure costs little: the run ends earlier.
         watch : callable, optional
             Called with (iteration, max of residual and product); true stops.
         ready : callable, optional
             Called with (point, max of residual and product); true stops before the target, as :data:`EARLY`.
         """
-        stopping, dilatancy = Stopping(most), self.dilatancy(theta)
+        stopping, dilatancy = Stopping(most, patient), self.dilatancy(theta)
         step, iteration, kept, why = 1.0, 0, z, ""
         while True:
             residuals = Residuals.of(self.problem, z, dilatancy)

@@ -181,19 +181,19 @@ class Run:
 
     def from_near(self, u: Array, t: Array) -> Finished | None:
         """Iterate from a state nearby, displacements (N,) and forces (m, d) scaled; return the exact answer or None."""
-        return self.close_in(self.engine.near(u, t), "interior point from nearby")
+        return self.close_in(self.engine.near(u, t), "interior point from nearby", patient=False)
 
     def attempts(self, further: Iterable[Start] = ()) -> Iterator[Finished | None]:
         """Return what the interior point finds from each start in turn, and from further ones."""
         return (self.from_start(start) for start in (*starts_for(self.scaled), *further))
 
-    def close_in(self, z: Point, stage: str, share: float = SHARE) -> Finished | None:
+    def close_in(self, z: Point, stage: str, share: float = SHARE, *, patient: bool = True) -> Finished | None:
         """Iterate to ever smaller targets, trying the exact finish at each, until it succeeds or nothing moves."""
         found, targets, early = None, list(TARGETS), EarlyFinish(self.scaled)
         most, ready = MOST[self.scaled.dim], early.worth_trying if self.scaled.dim == 2 else None
         while targets and found is None:
             z, outcome = self.engine.run(
-                z, target=targets[0], most=most, share=share, watch=self.watch(stage), ready=ready
+                z, target=targets[0], most=most, share=share, patient=patient, watch=self.watch(stage), ready=ready
             )
             self.iterations += outcome.iterations
             most -= outcome.iterations
