@@ -45,6 +45,7 @@ from concio.problem.limits_of_work import (
     LARGEST_SEARCH,
     UNASKED_CONES,
     UNASKED_IN_SPACE,
+    UNASKED_SPREAD,
     UNASKED_WORK,
 )  # fmt: skip
 from concio.problem.solution import PROVEN_FAILURES, Progress, ProgressCallback, Status
@@ -215,7 +216,7 @@ def limit_stages(
     joints = cornered or twisted_joints(assembly, _motions(found), SPREAD)
     if joints and found.steps is not None and found.steps.multipliers and 0 < bound < np.inf:
         tell("load steps with pressure spread over the joints")
-        most = UNASKED_IN_SPACE if steps is None else LARGEST_SEARCH
+        most = UNASKED_SPREAD if steps is None else LARGEST_SEARCH
         spread = spread_steps(assembly, groups, bound, most, joints, stated=not cornered, progress=progress)
         found = replace(found, spread=spread)
         yield "spread", found

@@ -24,7 +24,7 @@ from concio.analysis.lent_compliance import lent_assembly
 from concio.analysis.load_steps import LoadSteps, load_steps
 from concio.contact.assembly import Assembly
 from concio.contact.pairs import CONTACT_MODELS
-from concio.contact.patch_points import spread_points
+from concio.contact.patch_points import SPREADING, spread_points
 from concio.kinematics.frames import cross
 from concio.model.interfaces.patch import Patch
 from concio.problem.contact_problem import Array
@@ -35,9 +35,6 @@ CORNERS, SPREAD = CONTACT_MODELS.index("corners of the patch"), CONTACT_MODELS.i
 
 TWISTS = 1e-3
 """Share of the largest relative velocity that a joint must slip by turning about its normal to count as twisting."""
-
-POINTS = (6, 4)
-"""Points along each side that spread pressure, as many as the size allows: torsion is right to 0.5 and 2.3 %."""
 
 FINEST, FINE = 0.03, 24
 """Share of the usual least step of loads that twist joints, and points along each side that the torsion of others is
@@ -170,7 +167,7 @@ def spread_steps(
     progress : callable, optional
     """
     patches = len(assembly.detection.interfaces)
-    for points in (0,) if stated else POINTS:
+    for points in (0,) if stated else SPREADING:
         if max(patches * points**2, len(assembly.pairs)) > most:
             continue
         spread = assembly if stated else lent_assembly(replace(assembly.model, contact_points=points))

@@ -19,6 +19,10 @@ UNASKED_IN_SPACE = 1_500
 """Up to this number of pairs in space collapse states are searched for by default, and the least load that was not
 reached is applied in one step: beyond, the few programmes of some seconds end far from a state."""
 
+UNASKED_SPREAD = 4_000
+"""Up to this number of pairs load steps with the pressure of joints spread over them are taken by default where joints
+twist: they take about as long as the load steps at their corners."""
+
 MOST_SLIDING = 150
 """Largest number of parts that slide which an assessment in the plane follows; in space, where a curve takes many
 programmes, it follows none."""

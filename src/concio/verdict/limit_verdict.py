@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from concio.contact.assembly import Assembly
+from concio.contact.patch_points import SPREADING
 from concio.display import Units, counted
+from concio.problem.limits_of_work import LARGEST_SEARCH
 from concio.problem.solution import PROVEN_FAILURES, Status
 from concio.verdict.attention import MOTION_TURNED, attention, joints_not_made
 from concio.verdict.crushing import crushing
@@ -93,7 +95,7 @@ def _outcome(found: LimitResult) -> tuple[Outcome, str]:
     if without_limit(found):
         return Outcome.INCOMPLETE, f"No limit of {named(found)} was found."
     if not math.isnan(found.design):
-        return Outcome.HOLDS, f"Design with {max(found.design, 0.0):.6g} times {named(found)} at most."
+        return Outcome.HOLDS, f"Design with {max(found.design, 0.0):.6g} times {named(found)} at most{_unless(found)}."
     if found.associated.locked:
         return Outcome.INCOMPLETE, "Neither an upper bound nor a carried load was found."
     if found.steps is None and found.path is None and found.path_note.startswith("not asked"):
@@ -175,7 +177,7 @@ def _design(found: LimitResult, question: Question) -> str:
             "times all constant loads of their part) as the load grows from rest. Only joints that never crush carry "
             "as much: give them a compressive strength before a design value is taken."
         )
-    return f"Design with {low:.6g} times {groups} ({kN}) at most: {_why(found)}."
+    return f"Design with {low:.6g} times {groups} ({kN}) at most{_unless(found)}: {_why(found)}."
 
 
 def _why(found: LimitResult) -> str:
@@ -310,7 +312,7 @@ def _limits(found: LimitResult) -> tuple[str, ...]:
     """Return what limits the answer."""
     assembly = found.assembly
     told = list(joints_not_made(assembly.detection))
-    if found.twisting:
+    if found.twisting and not _torsion_open(found):
         told.append(_torsion(found))
     if found.collapse_state is not None and not found.state_counts:
         told.append(
@@ -351,13 +353,31 @@ def _breakable(found: LimitResult) -> tuple[str, ...]:
     )
 
 
+def _torsion_open(found: LimitResult) -> bool:
+    """Return whether joints at whose corners contact is stated twist, and their pressure was not spread."""
+    return bool(found.twisting) and (found.spread is None or not found.spread.steps.multipliers)
+
+
+def _unless(found: LimitResult) -> str:
+    """Return what the design value is subject to."""
+    if not _torsion_open(found):
+        return ""
+    return f", unless torsion governs ({counted(found.twisting, 'joint')} {_verb(found.twisting, 'twists', 'twist')})"
+
+
 def _torsion(found: LimitResult) -> str:
+    """Return what joints that twist do to the numbers, and what would spread their pressure where that was not done."""
     twist = _verb(found.twisting, "twists", "twist")
-    joints = f"{counted(found.twisting, 'joint')} with contact at their corners {twist}"
+    with_corners = f"{counted(found.twisting, 'joint')} with contact at {_verb(found.twisting, 'its', 'their')} corners"
+    joints = f"{with_corners} {twist} as the structure begins to move"
     strong = f"friction resists torsion there up to {MOTION_TURNED:g} times better than under uniform pressure"
-    if found.spread is None:
-        return f"{joints} as the structure begins to move: {strong}, and all numbers may be too large by that factor"
-    return f"{joints} as the structure begins to move: {strong}; the design value does not include that"
+    if not _torsion_open(found):
+        return f"{joints}: {strong}; the design value does not include that"
+    if min(SPREADING) ** 2 * len(found.assembly.detection.interfaces) <= LARGEST_SEARCH:
+        more = "load steps with that pressure are taken on request (--steps)"
+    else:
+        more = "the model is too large to repeat its load steps so; contact_points = 4 in the model spreads it"
+    return f"whether torsion governs: {joints}, and {strong}, by which all numbers may be too large; {more}"
 
 
 def _unchecked(found: LimitResult, outcome: Outcome) -> tuple[str, ...]:
@@ -370,6 +390,8 @@ def _unchecked(found: LimitResult, outcome: Outcome) -> tuple[str, ...]:
         )
     if found.dead is None:
         told.append("whether the loads that stay constant are carried alone with Coulomb friction")
+    if _torsion_open(found) and not math.isnan(found.design):
+        told.append(_torsion(found))
     return (*told, *(() if outcome is Outcome.FAILS else _unseen(found)))
 
 

@@ -298,6 +298,28 @@ def test_the_headline_of_a_twisted_footing_lies_within_a_thousandth_of_even_pres
     assert summary["coulomb_spread_steps_fail"] == found.spread.not_reached
 
 
+@pytest.mark.parametrize(("most", "more"), [(15_000, "on request (--steps)"), (15, "too large")])
+def test_a_design_value_of_corners_that_twist_is_subject_to_torsion(
+    monkeypatch: pytest.MonkeyPatch, most: int, more: str
+) -> None:
+    """Where the pressure was not spread the headline said "Design with 2.83" of a footing that carries 1.53."""
+    monkeypatch.setattr("concio.analysis.limit.UNASKED_SPREAD", 0)
+    monkeypatch.setattr("concio.verdict.limit_verdict.LARGEST_SEARCH", most)
+    found = concio.limit(footing("auto"))
+    verdict = found.verdict
+    assert found.spread is None
+    assert found.design > 1.5 * EVEN
+    for said in (verdict.headline, verdict.answer):
+        assert "at most, unless torsion governs (1 joint twists)" in said
+    (open_,) = [said for said in verdict.unchecked if said.startswith("whether torsion governs")]
+    assert more in open_
+    assert "up to 1.85 times better" in open_
+    corners = "1 joint with contact at its corners twists", "98 joints with contact at their corners twist"
+    for said in (verdict.headline, open_):
+        for text in (said, said.replace(*corners).replace("1 joint twists", "98 joints twist")):
+            assert {piece.language for piece in italian(text)} == {"it"}
+
+
 def test_a_block_that_slides_or_tips_twists_no_joint() -> None:
     assembly = concio.assemble(footing("corners"))
     reach = assembly.disc.reach[1]
