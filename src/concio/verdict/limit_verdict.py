@@ -323,9 +323,10 @@ def _limits(found: LimitResult) -> tuple[str, ...]:
     if found.endless or without_limit(found):
         told.append("no joint crushes in this model: a compressive strength would bound the load")
     told += (*_breakable(found), *crushing(assembly))
-    if found.lent_compliance:
+    sought = found.steps is not None or found.path is not None or found.collapse_state is not None
+    if sought and found.lent_compliance:
         told.append(REGULARISED)
-    if bool(np.any(assembly.laws.friction > 0)):
+    if sought and bool(np.any(assembly.laws.friction > 0)):
         told.append(SEVERAL)
     return tuple(told)
 

@@ -120,6 +120,7 @@ def test_the_quick_limit_is_the_bound_alone(wall: Path) -> None:
     assert told["associated_multiplier"] > 0
     assert told["verdict"]["outcome"] == "holds"
     assert "neither a path nor load steps" in " ".join(told["verdict"]["unchecked"])
+    assert "contact states" not in " ".join(told["verdict"]["limits"]), "none were sought"
 
 
 @pytest.mark.parametrize(
