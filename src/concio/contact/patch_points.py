@@ -35,7 +35,6 @@ SPREADING = (6, 4)
 0.5 and 2.3 % on a square."""
 
 
-
 def corner_points(patches: Sequence[Patch]) -> tuple[Array, Array, Array]:
     """Return the corners (m, 3) of all patches, the area (m,) of each [m2], and their number in each patch (p,).
 

@@ -374,7 +374,9 @@ def _torsion(found: LimitResult) -> str:
     strong = f"friction resists torsion there up to {MOTION_TURNED:g} times better than under uniform pressure"
     if not _torsion_open(found):
         return f"{joints}: {strong}; the design value does not include that"
-    if min(SPREADING) ** 2 * len(found.assembly.detection.interfaces) <= LARGEST_SEARCH:
+    if found.spread is not None or not math.isfinite(found.associated.multiplier):
+        more = "no load steps with that pressure were found; contact_points = 4 in the model spreads it"
+    elif min(SPREADING) ** 2 * len(found.assembly.detection.interfaces) <= LARGEST_SEARCH:
         more = "load steps with that pressure are taken on request (--steps)"
     else:
         more = "the model is too large to repeat its load steps so; contact_points = 4 in the model spreads it"
@@ -391,9 +393,11 @@ def _unchecked(found: LimitResult, outcome: Outcome) -> tuple[str, ...]:
         )
     if found.dead is None:
         told.append("whether the loads that stay constant are carried alone with Coulomb friction")
-    if _torsion_open(found) and not math.isnan(found.design):
+    if outcome is Outcome.FAILS:
+        return tuple(told)
+    if _torsion_open(found):
         told.append(_torsion(found))
-    return (*told, *(() if outcome is Outcome.FAILS else _unseen(found)))
+    return (*told, *_unseen(found))
 
 
 def _unseen(found: LimitResult) -> tuple[str, ...]:

@@ -45,6 +45,10 @@ def test_a_column_has_the_unit_of_its_heading(tmp_path: Path, thickness: str) ->
     _, pier = model.bodies
     assert isinstance(pier, Body)
     assert (pier.area, pier.thickness) == pytest.approx((0.4 * 1.2, 0.25))
+    said = "name,outline [cm],thickness,mesh_size\na,0 0; 40 0; 40 20,250 mm,\n"  # the cell says it, or is empty
+    (plate,) = concio.load(written(tmp_path, said)).bodies
+    assert isinstance(plate, Body)
+    assert (plate.thickness, plate.mesh_size) == (0.25, None)
     holed = "name,outline [cm],holes [cm]\na,0 0; 40 0; 40 20; 0 20,10 5; 20 5; 20 15\n"
     (plate,) = concio.load(written(tmp_path, holed)).bodies
     assert isinstance(plate, Body)
@@ -60,6 +64,10 @@ def test_a_column_has_the_unit_of_its_heading(tmp_path: Path, thickness: str) ->
         ("b.json", '[{"name": "a", "outline": [[0, 0], [40, 0], [40, 20]]}]', '"unit": "cm"'),
         ("b.json", '{"unit": "cm", "blocks": [{"name": "a", "outline": [[0, 0], [4, 0], [4, 2]], "thickness": 25}]}',
          '"thickness": "25 cm"'),
+        ("b.json", '{"unit": "cm", "blocks": [{"name": "a", "outline": [[0, 0], [4, 0], [4, 2]], "mesh_size": "3"}]}',
+         '"mesh_size": "3 cm"'),
+        ("b.json", '{"unit": "", "blocks": [{"name": "a", "outline": [[0, 0], [40, 0], [40, 20]]}]}', '"unit": "cm"'),
+        ("b.csv", "name,outline (cm)\na,0 0; 40 0; 40 20\n", "brackets: outline \\[cm\\]"),
         ("b.csv", "name,outline [cm],holes [mm]\na,0 0; 40 0; 40 20,1 1; 2 1; 2 2\n", "unit of the outline"),
     ],
 )  # fmt: skip

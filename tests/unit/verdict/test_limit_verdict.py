@@ -320,6 +320,27 @@ def test_a_design_value_of_corners_that_twist_is_subject_to_torsion(
             assert {piece.language for piece in italian(text)} == {"it"}
 
 
+def test_a_bound_alone_is_subject_to_torsion_too() -> None:
+    """2.83 was said of a footing that an even pressure turns at 1.53, without a word of torsion."""
+    found = concio.limit(footing("auto"), path=False, steps=False, search=False)
+    (open_,) = [said for said in found.verdict.unchecked if said.startswith("whether torsion governs")]
+    assert "all numbers may be too large; load steps with that pressure are taken on request (--steps)" in open_
+    assert np.isnan(found.design)
+
+
+def test_load_steps_with_spread_pressure_that_carry_nothing_are_not_offered_again() -> None:
+    found = concio.limit(footing("auto"), search=False)
+    assert found.spread is not None
+    none = replace(found.spread, steps=replace(found.spread.steps, multipliers=()))
+    locked = replace(found.associated, multiplier=np.inf)
+    for lost in (replace(found, spread=none), replace(found, spread=None, associated=locked)):
+        (open_,) = [said for said in lost.verdict.unchecked if said.startswith("whether torsion governs")]
+        assert "no load steps with that pressure were found; contact_points = 4" in open_
+        for text in (open_, open_.replace("1 joint with contact at its corners twists", "7 joints with contact at "
+                                          "their corners twist")):  # fmt: skip
+            assert {piece.language for piece in italian(text)} == {"it"}
+
+
 def test_a_block_that_slides_or_tips_twists_no_joint() -> None:
     assembly = concio.assemble(footing("corners"))
     reach = assembly.disc.reach[1]

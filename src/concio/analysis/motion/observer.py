@@ -67,7 +67,7 @@ class Observer:
         self.joints = tuple((model.bodies[f.a].name, model.bodies[f.b].name) for f in reference.detection.faces)
         plane = reference.disc.dim == 2
         self._joint = {key: k for k, key in enumerate(reference.drawn)} if plane else dict(reference.joint_numbers)
-        self._corners = None if plane else _JointCorners(reference)
+        self._corners = _JointCorners(reference)
         self._reacting: tuple[Array, Array, Array, Array] | None = None
         self._known: tuple[Array, Array, Array] | None = None
         self._among: tuple[Observer, Array] | None = None
@@ -139,6 +139,7 @@ class Observer:
         """Return the largest opening and the plastic slip of each joint that was there in the beginning (f,) [m]."""
         opening, slip = np.zeros(len(self.joints)), np.zeros(len(self.joints))
         search, layout = self.maker.search, self.maker.search.layout
+        np.maximum.at(opening, self._corners.joint, self._corners.openings(state.placement))
         if not len(self.joints) or layout is None:
             return opening, slip
         own, number = self._joints_of_slots()
@@ -147,9 +148,8 @@ class Observer:
             gap, valid = rows.gap, rows.valid
         else:
             gap, valid = layout.maker.gaps(search.touch(state.placement))
-        if self._corners is not None:  # what gapes wider than the search looks has no slots
+        if self.reference.disc.dim == 3:
             gap = np.where(valid, gap, 0.0)
-            np.maximum.at(opening, self._corners.joint, self._corners.openings(state.placement))
         np.maximum.at(opening, number, np.maximum(gap[own], 0.0))
         memory = state.memory
         if memory.key is self.maker.slots.key:
@@ -188,18 +188,20 @@ class Observer:
 
 
 class _JointCorners:
-    """Corners of the patches as described between bodies in space that are not meshed."""
+    """Corners of the joints as described between bodies that are not meshed: what gapes wide has no slots."""
 
     def __init__(self, reference: Reference) -> None:
-        disc = reference.disc
-        faces = [f for f in reference.detection.faces if isinstance(f, Patch) and max(disc.shape_of[[f.a, f.b]]) < 0]
-        count = [len(face.polygon) for face in faces]
-        self.joint = np.repeat([reference.joint_numbers[face.a, face.b] for face in faces], count).astype(int)
-        """Number (k,) of the first joint between the two bodies."""
-        self._a, self._b = (np.repeat([getattr(f, side) for f in faces], count).astype(int) for side in "ab")
-        self._at = np.concatenate([face.polygon for face in faces]) if faces else np.zeros((0, 3))
-        self._gap = np.concatenate([face.gap for face in faces]) if faces else np.zeros(0)
-        self._normal = np.repeat(np.array([face.normal for face in faces]).reshape(-1, 3), count, axis=0)
+        disc, numbers = reference.disc, reference.joint_numbers
+        faces = [(k, f) for k, f in enumerate(reference.detection.faces) if max(disc.shape_of[[f.a, f.b]]) < 0]
+        corners = [f.polygon if isinstance(f, Patch) else np.stack([f.start, f.end]) for _, f in faces]
+        number = [numbers[f.a, f.b] if isinstance(f, Patch) else k for k, f in faces]
+        count = [len(at) for at in corners]
+        self.joint = np.repeat(number, count).astype(int)
+        """Number (k,) of the joint; in space of the first one between the two bodies."""
+        self._a, self._b = (np.repeat([getattr(f, side) for _, f in faces], count).astype(int) for side in "ab")
+        self._at = np.concatenate(corners) if faces else np.zeros((0, disc.dim))
+        self._gap = np.concatenate([f.gap for _, f in faces]) if faces else np.zeros(0)
+        self._normal = np.repeat(np.array([f.normal for _, f in faces]).reshape(-1, disc.dim), count, axis=0)
         self._rest = disc.centroids
 
     def openings(self, placement: Placement) -> Array:

@@ -157,7 +157,7 @@ def _json_rows(text: str, where: str, length: str) -> tuple[list[tuple[str, Mapp
         what = "it is nested too deeply" if isinstance(error, RecursionError) else "a number has too many digits"
         raise InputError(what, where=where) from None
     factor, unit = 1.0, data.get("unit") if isinstance(data, dict) else None
-    if length != "m" and unit is None:
+    if length != "m" and not unit:
         hint = f'write {{"unit": "{length}", "blocks": [...]}}'
         raise InputError(NO_UNIT.format("coordinates", length), where=where, hint=hint)
     if isinstance(data, dict):
@@ -176,8 +176,8 @@ def _json_rows(text: str, where: str, length: str) -> tuple[list[tuple[str, Mapp
             msg = f"{row!r} is not a table of keys"
             raise InputError(msg, where=place)
         for key in _NUMBERS:
-            if length != "m" and isinstance(row.get(key), int | float):
-                hint = f'write "{key}": "{row[key]:g} {length}"'
+            if length != "m" and _is_bare(row.get(key)):
+                hint = f'write "{key}": "{row[key]} {length}"'
                 raise InputError(NO_UNIT.format(key, length), where=place, hint=hint)
         rows.append((place, row))
     return rows, factor
@@ -187,7 +187,7 @@ def _csv_rows(text: str, where: str, length: str) -> tuple[Iterable[tuple[str, M
     reader = csv.reader(io.StringIO(text), skipinitialspace=True)
     with _legible(reader, where):
         header, units = _columns(next(reader, []), where, length)
-    return _csv_lines(reader, header, units, where), quantity(f"1 {units['outline']}", "length", where=where)
+    return _csv_lines(reader, header, units, where, length), quantity(f"1 {units['outline']}", "length", where=where)
 
 
 def _columns(cells: list[str], where: str, length: str) -> tuple[list[str], dict[str, str]]:
@@ -201,25 +201,36 @@ def _columns(cells: list[str], where: str, length: str) -> tuple[list[str], dict
             hint = "the first line must name the columns: " + ",".join(_COLUMNS[:-2])
             if ";" in "".join(cells):
                 hint = "columns are separated by commas, vertices by semicolons"
+            for cell in cells:
+                if cell.split("(")[0].strip() == name != cell:
+                    hint = f"units stand in square brackets: {cell.replace('(', '[').replace(')', ']')}"
             raise InputError(msg, where=where, hint=hint)
     twice = [name for name in header if header.count(name) > 1]
     if twice:
         msg = f"the header has the column '{twice[0]}' twice"
         raise InputError(msg, where=where, hint="leave one of them out")
     stated = {name: unit for name, unit in found if name in _LENGTHS}
-    for name, unit in stated.items():
-        if length != "m" and not unit and name != "holes":
-            hint = f"name it '{name} [{length}]'"
-            raise InputError(NO_UNIT.format(f"column '{name}'", length), where=where, hint=hint)
-    units = {name: unit or "m" for name, unit in stated.items()}
+    if length != "m" and not stated["outline"]:
+        raise _no_unit(length, where)
+    units = {name: unit or ("m" if length == "m" or name not in _NUMBERS else "") for name, unit in stated.items()}
     if stated.get("holes") and units["holes"] != units["outline"]:
         msg = "outlines and holes are in different units"
         raise InputError(msg, where=where, hint="holes have the unit of the outline")
     return header, units
 
 
+def _no_unit(length: str, where: str, column: str = "outline") -> InputError:
+    hint = f"name it '{column} [{length}]'"
+    return InputError(NO_UNIT.format(f"column '{column}'", length), where=where, hint=hint)
+
+
+def _is_bare(value: Any) -> bool:
+    """Tell whether an entry is a number without a unit, be it a text."""
+    return is_bare(value) if isinstance(value, str) else isinstance(value, int | float)
+
+
 def _csv_lines(
-    reader: Any, header: list[str], units: Mapping[str, str], where: str
+    reader: Any, header: list[str], units: Mapping[str, str], where: str, length: str
 ) -> Iterator[tuple[str, Mapping[str, Any]]]:
     with _legible(reader, where):
         for cells in reader:
@@ -232,6 +243,8 @@ def _csv_lines(
             row = dict(zip(header, cells, strict=True))
             for key in _NUMBERS:
                 if row.get(key) and is_bare(row[key]):
+                    if not units[key]:
+                        raise _no_unit(length, place, key)
                     row[key] = f"{row[key]} {units[key]}"
             kept = ("name", "outline", "material") if row.get("kind") == "fixed" else ("name", "outline")
             yield place, {k: unguarded(v) for k, v in row.items() if v != "" or k in kept}
