@@ -10,6 +10,7 @@ import concio
 from concio.analysis.cracks.diagnosis_asked import read_measurements
 from concio.errors import InputError
 from concio.model.body import Body
+from concio.model.file.block_table import write_blocks
 
 MODEL = """
 blocks_file = "{table}"
@@ -93,3 +94,16 @@ def test_measurements_say_their_unit_where_the_file_counts_in_another_than_m(tmp
         read_measurements(table, length="cm")
     table.write_text("name,kind,value [cm],error,body_a,body_b\nT1,tilt,2 mrad,1 mrad,a,\nK1,opening,1.2,1 mm,a,b\n")
     assert read_measurements(table, length="cm")[1].value == pytest.approx(0.012)
+
+
+def test_a_table_that_concio_wrote_is_read_beside_any_file_once_it_says_metres(tmp_path: Path) -> None:
+    """Tables are written in metres: the hint named the unit of the file alone, a factor of 100 if it is followed."""
+    blocks = (Body("a", ((0.0, 0.0), (0.4, 0.0), (0.4, 0.2)), kind="rigid", thickness=0.25),)
+    write_blocks(tmp_path / "b.csv", blocks)
+    text = (tmp_path / "b.csv").read_text()
+    with pytest.raises(InputError, match=r"'outline \[m\]' where it is in metres"):
+        concio.load(written(tmp_path, text))
+    said = text.replace("outline", "outline [m]", 1).replace("thickness", "thickness [m]", 1)
+    (read,) = concio.load(written(tmp_path, said)).bodies
+    assert isinstance(read, Body)
+    assert (read.area, read.thickness) == pytest.approx((0.04, 0.25))

@@ -158,7 +158,7 @@ def _json_rows(text: str, where: str, length: str) -> tuple[list[tuple[str, Mapp
         raise InputError(what, where=where) from None
     factor, unit = 1.0, data.get("unit") if isinstance(data, dict) else None
     if length != "m" and not unit:
-        hint = f'write {{"unit": "{length}", "blocks": [...]}}'
+        hint = f'write {{"unit": "{length}", "blocks": [...]}}, or "m" where they are in metres'
         raise InputError(NO_UNIT.format("coordinates", length), where=where, hint=hint)
     if isinstance(data, dict):
         if data.get("format", FORMAT) != FORMAT or data.get("version", VERSION) != VERSION:
@@ -177,7 +177,7 @@ def _json_rows(text: str, where: str, length: str) -> tuple[list[tuple[str, Mapp
             raise InputError(msg, where=place)
         for key in _NUMBERS:
             if length != "m" and _is_bare(row.get(key)):
-                hint = f'write "{key}": "{row[key]} {length}"'
+                hint = f'write "{key}": "{row[key]} {length}", or "{row[key]} m" where it is in metres'
                 raise InputError(NO_UNIT.format(key, length), where=place, hint=hint)
         rows.append((place, row))
     return rows, factor
@@ -220,7 +220,7 @@ def _columns(cells: list[str], where: str, length: str) -> tuple[list[str], dict
 
 
 def _no_unit(length: str, where: str, column: str = "outline") -> InputError:
-    hint = f"name it '{column} [{length}]'"
+    hint = f"name it '{column} [{length}]', or '{column} [m]' where it is in metres"
     return InputError(NO_UNIT.format(f"column '{column}'", length), where=where, hint=hint)
 
 
