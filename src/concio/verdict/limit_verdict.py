@@ -9,15 +9,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from concio.contact.assembly import Assembly
-from concio.contact.patch_points import SPREADING
 from concio.display import Units, counted
-from concio.problem.limits_of_work import LARGEST_SEARCH
 from concio.problem.solution import PROVEN_FAILURES, Status
-from concio.verdict.attention import MOTION_TURNED, attention, joints_not_made
+from concio.verdict.attention import attention, joints_not_made
 from concio.verdict.crushing import crushing
 from concio.verdict.no_limit import SAME, without_limit
 from concio.verdict.question import Acting, Question, question_of
 from concio.verdict.step_verdict import REGULARISED, SEVERAL, loads_in_short
+from concio.verdict.torsion_of_limits import torsion_open, torsion_words, twisting_joints, unless_torsion
 from concio.verdict.unseen import unseen
 from concio.verdict.verdict import Outcome, Verdict
 
@@ -95,7 +94,8 @@ def _outcome(found: LimitResult) -> tuple[Outcome, str]:
     if without_limit(found):
         return Outcome.INCOMPLETE, f"No limit of {named(found)} was found."
     if not math.isnan(found.design):
-        return Outcome.HOLDS, f"Design with {max(found.design, 0.0):.6g} times {named(found)} at most{_unless(found)}."
+        least = f"{max(found.design, 0.0):.6g} times {named(found)}"
+        return Outcome.HOLDS, f"Design with {least} at most{unless_torsion(found)}."
     if found.associated.locked:
         return Outcome.INCOMPLETE, "Neither an upper bound nor a carried load was found."
     if found.steps is None and found.path is None and found.path_note.startswith("not asked"):
@@ -177,7 +177,7 @@ def _design(found: LimitResult, question: Question) -> str:
             "times all constant loads of their part) as the load grows from rest. Only joints that never crush carry "
             "as much: give them a compressive strength before a design value is taken."
         )
-    return f"Design with {low:.6g} times {groups} ({kN}) at most{_unless(found)}: {_why(found)}."
+    return f"Design with {low:.6g} times {groups} ({kN}) at most{unless_torsion(found)}: {_why(found)}."
 
 
 def _why(found: LimitResult) -> str:
@@ -202,8 +202,7 @@ def _why(found: LimitResult) -> str:
         return (
             f"certified load steps carry it with the pressure of each joint spread over {n} x {n} points; at the "
             f"corners "
-            f"of the joints alone, {counted(found.twisting, 'joint')} of which "
-            f"{_verb(found.twisting, 'twists', 'twist')}, they "
+            f"of the joints alone, {' of which '.join(twisting_joints(found).rsplit(' ', 1))}, they "
             f"would seem to carry {carried:.6g} ({too} are subtracted: these points overestimate torsion by as much"
             f"{_spread_next(found)})"
         )
@@ -274,10 +273,6 @@ def _forces(question: Question, factor: float, units: Units) -> str:
     return " and ".join(told)
 
 
-def _verb(count: int, one: str, many: str) -> str:
-    return one if count == 1 else many
-
-
 def _not_made(assembly: Assembly) -> tuple[str, ...]:
     return tuple(f"{line[0].upper()}{line[1:]}." for line in joints_not_made(assembly.detection))
 
@@ -312,8 +307,8 @@ def _limits(found: LimitResult) -> tuple[str, ...]:
     """Return what limits the answer."""
     assembly = found.assembly
     told = list(joints_not_made(assembly.detection))
-    if found.twisting and not _torsion_open(found):
-        told.append(_torsion(found))
+    if found.twisting and not torsion_open(found):
+        told.append(torsion_words(found))
     if found.collapse_state is not None and not found.state_counts:
         told.append(
             f"the collapse state at {found.collapse_state.multiplier:.6g} twists joints about the points nearest "
@@ -354,35 +349,6 @@ def _breakable(found: LimitResult) -> tuple[str, ...]:
     )
 
 
-def _torsion_open(found: LimitResult) -> bool:
-    """Return whether joints at whose corners contact is stated twist, and their pressure was not spread."""
-    return bool(found.twisting) and (found.spread is None or not found.spread.steps.multipliers)
-
-
-def _unless(found: LimitResult) -> str:
-    """Return what the design value is subject to."""
-    if not _torsion_open(found):
-        return ""
-    return f", unless torsion governs ({counted(found.twisting, 'joint')} {_verb(found.twisting, 'twists', 'twist')})"
-
-
-def _torsion(found: LimitResult) -> str:
-    """Return what joints that twist do to the numbers, and what would spread their pressure where that was not done."""
-    twist = _verb(found.twisting, "twists", "twist")
-    with_corners = f"{counted(found.twisting, 'joint')} with contact at {_verb(found.twisting, 'its', 'their')} corners"
-    joints = f"{with_corners} {twist} as the structure begins to move"
-    strong = f"friction resists torsion there up to {MOTION_TURNED:g} times better than under uniform pressure"
-    if not _torsion_open(found):
-        return f"{joints}: {strong}; the design value does not include that"
-    if found.spread is not None or not math.isfinite(found.associated.multiplier):
-        more = "no load steps with that pressure were found; contact_points = 4 in the model spreads it"
-    elif min(SPREADING) ** 2 * len(found.assembly.detection.interfaces) <= LARGEST_SEARCH:
-        more = "load steps with that pressure are taken on request (--steps)"
-    else:
-        more = "the model is too large to repeat its load steps so; contact_points = 4 in the model spreads it"
-    return f"whether torsion governs: {joints}, and {strong}, by which all numbers may be too large; {more}"
-
-
 def _unchecked(found: LimitResult, outcome: Outcome) -> tuple[str, ...]:
     """Return what would be expected of a limit load and was not checked."""
     told = []
@@ -395,8 +361,8 @@ def _unchecked(found: LimitResult, outcome: Outcome) -> tuple[str, ...]:
         told.append("whether the loads that stay constant are carried alone with Coulomb friction")
     if outcome is Outcome.FAILS:
         return tuple(told)
-    if _torsion_open(found):
-        told.append(_torsion(found))
+    if torsion_open(found):
+        told.append(torsion_words(found))
     return (*told, *_unseen(found))
 
 

@@ -304,7 +304,7 @@ def test_a_design_value_of_corners_that_twist_is_subject_to_torsion(
 ) -> None:
     """Where the pressure was not spread the headline said "Design with 2.83" of a footing that carries 1.53."""
     monkeypatch.setattr("concio.analysis.limit.UNASKED_SPREAD", 0)
-    monkeypatch.setattr("concio.verdict.limit_verdict.LARGEST_SEARCH", most)
+    monkeypatch.setattr("concio.verdict.torsion_of_limits.LARGEST_SEARCH", most)
     found = concio.limit(footing("auto"))
     verdict = found.verdict
     assert found.spread is None

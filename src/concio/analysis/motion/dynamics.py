@@ -366,8 +366,7 @@ class _Run:
         )  # fmt: skip
 
     def _shoot(self) -> None:
-        count = len(self.observer.joints)
-        opening, slip, energy = np.zeros(count), np.zeros(count), dict(self.sums)
+        (opening, slip), energy = np.zeros((2, len(self.observer.joints))), dict(self.sums)
         for mover in self.movers:
             own = self.observer.joints_of(mover.observer, mover.structure)
             first = own >= 0  # of several joints between two bodies in space
